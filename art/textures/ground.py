@@ -61,17 +61,17 @@ def paving() -> Texture:
 
 def lawn() -> Texture:
     """Return yellow-green grass, lively from near and even from far, as in the original."""
-    return opaque(_grass(source("lawn"), dryness=0.6))
+    return opaque(_grass(source("lawn"), dryness=0.7))
 
 
 def lawn_mown() -> Texture:
     """Return grass that was mown to and fro along u: four pairs of a light and a dark swath."""
     rng = source("lawn_mown")
-    picture = _grass(rng, dryness=0.4)
+    picture = _grass(rng, dryness=0.45)
     y = (np.arange(SIZE)[:, None] + 0.5) / SIZE
     wander = 0.1 * fractal(rng, 1.6, longest=120.0)
     swath = np.clip(5.0 * exact.sin(2 * np.pi * (4 * y) + wander), -1, 1)
-    return opaque(picture * (1.0 + 0.035 * swath[..., None] * np.array([1.0, 0.9, 1.1])))
+    return opaque(picture * (1.0 + 0.06 * swath[..., None] * np.array([1.0, 0.9, 1.1])))
 
 
 def _grass(rng: np.random.Generator, dryness: float) -> Picture:
@@ -79,13 +79,16 @@ def _grass(rng: np.random.Generator, dryness: float) -> Picture:
     blades = fractal(rng, 0.35, longest=10.0, stretch=(1.5, 0.8))
     tufts = fractal(rng, 0.9, longest=28.0)
     cloud = fractal(rng, 1.2, longest=70.0)
-    picture = painted((143.0, 178.0, 88.0), 0.13 * blades + 0.06 * tufts + 0.018 * cloud)
-    dry = np.clip(0.5 * fractal(rng, 0.9, longest=34.0) - 0.35, 0, 1)
-    picture = mixed(picture, painted((186.0, 188.0, 106.0), 0.1 * blades), dryness * dry)
-    deep = np.clip(0.6 * tufts - 0.5 + 0.35 * white(rng), 0, 1)
-    picture = mixed(picture, painted((88.0, 128.0, 52.0), 0.12 * blades), 0.55 * deep)
+    clumps = fractal(rng, 0.5, longest=30.0)
+    light = 0.16 * blades + 0.13 * tufts + 0.13 * clumps + 0.03 * cloud
+    picture = painted((143.0, 178.0, 88.0), np.clip(light, -0.75, 0.75))
+    dry = np.clip(0.6 * fractal(rng, 0.9, longest=34.0) - 0.3, 0, 1)
+    picture = mixed(picture, painted((196.0, 186.0, 112.0), 0.1 * blades), dryness * dry)
+    # Shade between tufts.
+    deep = np.clip(0.7 * tufts + 0.5 * clumps - 0.6 + 0.35 * white(rng), 0, 1)
+    picture = mixed(picture, painted((62.0, 92.0, 38.0), 0.12 * blades), 0.7 * deep)
     flower = rng.random(blades.shape)
-    return mixed(picture, (226.0, 222.0, 150.0), 0.5 * (flower > 0.996))
+    return mixed(picture, (226.0, 222.0, 150.0), 0.5 * (flower > 0.997))
 
 
 def soil() -> Texture:

@@ -74,7 +74,8 @@ def _rows(
     tuft = fractal(rng, 0.5, longest=14.0)
     cover = np.clip((width + 0.16 * tuft - across) * 4.0 + 0.5, 0, 1)
     earth = painted((122.0, 98.0, 70.0), 0.1 * fractal(rng, 0.6, longest=20.0))
-    plants = painted(leaf, 0.12 * tuft + 0.05 * white(rng))
+    growth = 0.07 * fractal(rng, 1.1, longest=90.0)
+    plants = painted(leaf, np.clip(0.2 * tuft + 0.08 * white(rng) + growth, -0.7, 0.7))
     plants = mixed(plants, deep, np.clip(0.5 * across + 0.2 * fractal(rng, 0.4, longest=9.0), 0, 1))
     return opaque(mixed(earth, plants, cover))
 

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from art.textures import bodywork, facades, ground, land, people, plants, roofs, wear
+from eyas.engine.render.textures.mipmap import linear
 from eyas.engine.world.build.materials import TEXTURES
+from eyas.lanes import exact
 from eyas.maps.textures.shipped import FILE
 
 
@@ -86,6 +88,62 @@ PAINTERS: dict[str, Callable[[], NDArray[np.uint8]]] = {
 """The function that paints each texture of `eyas.engine.world.build.materials.TEXTURES`."""
 
 
+ALBEDO: dict[str, tuple[float, float, float]] = {
+    # Pavements, roofs: Pomerantz et al., Examples of cooler reflective streets (LBNL-49283, 2003):
+    # asphalt .04 to .05 new, .12 to .2 worn; concrete .35 new, .2 to .3 worn. Akbari et al., Cool
+    # colors and roofs (LBNL, 2005): bitumen .05 to .15, gravel .2, old clay .15 to .3, white
+    # membranes .5 to .6 with a few years' dirt.
+    "asphalt": (0.156, 0.152, 0.145),
+    "asphalt_light": (0.215, 0.208, 0.195),
+    "asphalt_patch": (0.100, 0.099, 0.096),
+    "paving": (0.275, 0.248, 0.222),
+    "concrete": (0.300, 0.288, 0.264),
+    "clinker": (0.165, 0.100, 0.078),
+    "roof_tiles": (0.230, 0.118, 0.080),
+    "roof_terrace": (0.190, 0.152, 0.126),
+    "roof_gravel": (0.215, 0.205, 0.182),
+    "roof_membrane": (0.480, 0.470, 0.440),
+    "bitumen": (0.104, 0.103, 0.102),
+    # White of road markings: luminance factor .3 (class B2) to .6 new (EN 1436).
+    "paint": (0.520, 0.510, 0.485),
+    # Plants and soils in visible light, where they are darker than in all of the sun's: Bowker et
+    # al., Spectral reflectances of natural targets (NASA RP-1139, 1985): grass .05 to .12, soil .08
+    # to .2, dry sand .3 to .4; rape in flower, stubble and ripe grain .2 to .3.
+    "lawn": (0.080, 0.112, 0.033),
+    "lawn_mown": (0.077, 0.112, 0.032),
+    "soil": (0.152, 0.118, 0.080),
+    "sand": (0.400, 0.330, 0.232),
+    "dry_leaves": (0.088, 0.068, 0.046),
+    "crops": (0.092, 0.104, 0.048),
+    "crops_ripe": (0.250, 0.190, 0.092),
+    "crops_green": (0.066, 0.090, 0.035),
+    "crops_yellow": (0.240, 0.220, 0.058),
+    "crops_lilac": (0.122, 0.106, 0.142),
+    "crops_tan": (0.235, 0.190, 0.128),
+}
+"""Mean share of light that a texture reflects, of red, green and blue; of others, as painted."""
+
+_LIKE = dict.fromkeys(("asphalt_paint", "asphalt_lane", "asphalt_oil", "manhole"), "asphalt")
+"""Textures that lie in another's, and so are as much lighter or darker than painted as that is."""
+
+
+def _measured(name: str) -> NDArray[np.uint8]:
+    """Return a texture as light as `ALBEDO` says."""
+    own, of = PAINTERS[name](), _LIKE.get(name, name)
+    if of not in ALBEDO:
+        return own
+    mean = linear(PAINTERS[of]()[..., :3] / 255.0).mean(axis=(0, 1))
+    light = np.clip(linear(own[..., :3] / 255.0) * (ALBEDO[of] / mean), 1e-6, 1.0)
+    encoded = np.where(
+        light <= 0.0031308, 12.92 * light, 1.055 * exact.power(light, 1 / 2.4) - 0.055
+    )
+    own[..., :3] = np.round(255.0 * encoded)
+    if name == "asphalt_paint":
+        painted = linear(wear.paint()[..., 1] / 255.0).mean()
+        own[..., 3] = np.round(own[..., 3] * (ALBEDO["paint"][1] / painted))
+    return own
+
+
 def painted_textures() -> dict[str, NDArray[np.uint8]]:
     """Return every texture of `eyas.engine.world.build.materials.TEXTURES`, always the same bytes.
 
@@ -93,7 +151,7 @@ def painted_textures() -> dict[str, NDArray[np.uint8]]:
     the **top** of the tile, v = 1: code that samples with v upwards flips the rows. Alpha is 255
     except for the holes of `leaves`, the glass of facades, people and `cloth`, where it is 0.
     """
-    return {name: PAINTERS[name]() for name in TEXTURES}
+    return {name: _measured(name) for name in TEXTURES}
 
 
 def pack_textures() -> tuple[dict[Path, bytes], str]:

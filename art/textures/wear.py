@@ -17,9 +17,9 @@ def paint() -> Texture:
     rng = source("paint")
     dirt = fractal(rng, 0.9, longest=60.0)
     picture = painted((238.0, 237.0, 233.0), 0.022 * dirt + 0.02 * white(rng))
-    picture = mixed(picture, (176.0, 172.0, 164.0), np.clip(0.22 * dirt - 0.1, 0, 0.4))
+    picture = mixed(picture, (150.0, 147.0, 141.0), np.clip(0.3 * dirt - 0.05, 0, 0.6))
     wear = 0.75 * fractal(rng, 0.5, longest=20.0) + 0.65 * fractal(rng, 1.0, longest=70.0)
-    return opaque(mixed(picture, (84.0, 84.0, 86.0), 0.6 * np.clip((wear - 1.5) * 3.0, 0, 1)))
+    return opaque(mixed(picture, (84.0, 84.0, 86.0), 0.75 * np.clip((wear - 0.9) * 2.0, 0, 1)))
 
 
 def asphalt_paint() -> Texture:

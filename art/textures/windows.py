@@ -22,7 +22,13 @@ _CURTAINS: tuple[Colour, ...] = (
     (196.0, 176.0, 148.0),
     (150.0, 158.0, 168.0),
     (214.0, 210.0, 202.0),
+    (120.0, 84.0, 70.0),
+    (96.0, 112.0, 104.0),
+    (228.0, 224.0, 214.0),
 )
+
+_SKY: Colour = (142.0, 164.0, 190.0)
+_TONES, _SHARES = (0.45, 0.75, 1.0, 1.35), (0.3, 0.3, 0.25, 0.15)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,11 +97,16 @@ class Wall:
     def _room(self, left: int, top: int, right: int, bottom: int, opening: Opening) -> None:
         """Paint the view through a pane: a dark room, and perhaps a blind or curtains."""
         rng, height, width = self._rng, bottom - top, right - left
-        dark = np.array(opening.glass) * rng.uniform(0.75, 1.25)
-        fade = np.linspace(1.2, 0.8, height)[:, None, None]
-        pane = np.broadcast_to(dark * fade, (height, width, 3)).copy()
+        # Rooms are deep and dark, or bright; some panes hang askew and mirror more of the sky.
+        tone = np.array(opening.glass) * rng.choice(
+            (0.45, 0.75, 1.0, 1.35), p=(0.3, 0.3, 0.25, 0.15)
+        )
+        if rng.random() < 0.16:
+            tone = np.array(_SKY) * rng.uniform(0.55, 1.0)
+        fade = np.linspace(1.3, 0.7, height)[:, None, None]
+        pane = np.broadcast_to(tone * fade, (height, width, 3)).copy()
         if rng.random() < opening.curtained:
-            cloth = np.array(_CURTAINS[int(rng.integers(len(_CURTAINS)))]) * rng.uniform(0.6, 0.95)
+            cloth = np.array(_CURTAINS[int(rng.integers(len(_CURTAINS)))]) * rng.uniform(0.45, 1.0)
             if rng.random() < 0.6:
                 drop = round(height * rng.uniform(0.2, 1.0))
                 slats = 1 - 0.12 * (np.arange(drop) % 3 == 0)
@@ -135,7 +146,7 @@ class Wall:
 
     def finished(self) -> NDArray[np.uint8]:
         """Return the texture; alpha is 0 on glass."""
-        weather = 1 + 0.025 * fractal(self._rng, 1.3, longest=150.0, stretch=(2.5, 1.0))
+        weather = 1 + 0.045 * fractal(self._rng, 1.1, longest=150.0, stretch=(3.5, 1.0))
         weathered: Field = np.where(self.glass, 1.0, weather)
         colour = np.clip(np.round(self.picture * weathered[..., None]), 0, 255)
         alpha = np.where(self.glass, 0.0, 255.0)[..., None]

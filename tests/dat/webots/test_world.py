@@ -181,7 +181,7 @@ def test_sky_sun_fog_and_lamps_are_those_of_the_weather(scene):
     assert "have not seen it run" in nodes[0]["info"][0]
     sun = named(nodes, "tbgl")
     np.testing.assert_allclose(sun["direction"], -np.array(CLEAR_DAY.sun_direction), atol=1e-6)
-    assert sun["intensity"] == pytest.approx(2.7 * 1.02)
+    assert sun["intensity"] == pytest.approx(1.77 * 1.56)
     assert not [node for node in nodes if node.kind == "Fog"]
     fog = named(read(scene, FOG), "fog")
     assert (fog["fogType"], fog["visibilityRange"]) == ("EXPONENTIAL", pytest.approx(1000.0))

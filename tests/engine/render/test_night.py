@@ -7,7 +7,8 @@ import pytest
 import shapely
 
 from eyas.engine.mesh.flat import flat_polygon
-from eyas.engine.render.pack.light import lamp_grid
+from eyas.engine.render.kernels.light.tone import TONE_TOP
+from eyas.engine.render.pack.light import lamp_grid, tone_table
 from eyas.engine.sim.assets import load_assets
 from eyas.engine.state.draw import DrawList, PartLibrary, Picture
 from eyas.engine.state.scene import Lamps
@@ -30,7 +31,8 @@ HEIGHT = 7.2
 
 def lamps_at(places) -> Lamps:
     position = np.array([(x, y, HEIGHT) for x, y in places], np.float32)
-    return Lamps(position, np.tile(np.array([0, 0, -1], np.float32), (len(places), 1)))
+    down = np.tile(np.array([0, 0, -1], np.float32), (len(places), 1))
+    return Lamps(position, down, intensity=17.0)
 
 
 def paper(half: float = 100.0):
@@ -38,31 +40,35 @@ def paper(half: float = 100.0):
 
 
 def radiance(pixels: np.ndarray) -> np.ndarray:
-    """Undo sRGB and the tone curve `1 - exp(-1.35 x)`."""
-    encoded = pixels.astype(float) / 255
-    tone = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-    return -np.log(1 - tone) / 1.35
+    """Undo the tone curve."""
+    table = tone_table()
+    return np.interp(pixels, table, np.arange(len(table))) * (TONE_TOP / len(table))
 
 
 @pytest.fixture
 def lit_plane(drawn, renderer_of):
     """Return the red light on white paper at some distances east of the middle [m]."""
+    even = dataclasses.replace(DARK, lamps=0.0, ambient_up=(0.5, 0.5, 0.5))
 
     def see(lamps: Lamps, distances) -> np.ndarray:
         scene = scene_of([paper()], [0])
         scene.lamps = lamps
-        renderer = renderer_of(scene, lighting=DARK)
         views = looking([(d, 0.0, 40.0) for d in distances], pitch=np.pi / 2, fov=0.02)
-        return radiance(drawn(renderer, views, size=(9, 9)).rgb[:, 4, 4, 0])
+        lit, known = (
+            radiance(drawn(renderer_of(scene, lighting=each), views, size=(9, 9)).rgb[:, 4, 4, 0])
+            for each in (DARK, even)
+        )
+        return 0.5 * lit / known  # the ground is worn here and there
 
     return see
 
 
-def test_a_lamp_lights_with_the_square_of_the_distance_up_to_its_cut_off(lit_plane):
+def test_a_lamp_throws_light_aside_up_to_its_cut_off(lit_plane):
     distances = np.array([0.0, 4.0, 8.0, 12.0])
     light = lit_plane(lamps_at([(0, 0)]), distances)
     square = distances**2 + HEIGHT**2
-    expected = HEIGHT / square**1.5  # cosine over distance squared; even up to 1.1 rad
+    # Cosine over distance squared, and up to 2.5 times as much to the sides, even up to 1.1 rad.
+    expected = HEIGHT / square**0.5 / (0.4 * square + 0.6 * HEIGHT**2)
     assert light[0] == pytest.approx(0.55, abs=0.06)
     np.testing.assert_allclose(light / light[0], expected / expected[0], atol=0.02)
     narrow = dataclasses.replace(lamps_at([(0, 0)]), cut_off=1.15)

@@ -91,7 +91,9 @@ def test_a_lamp_is_mirrored_between_it_and_the_eye(seen):
     )
     night = dataclasses.replace(night, zenith_colour=(0.0,) * 3)
     road = plate("asphalt")
-    road.lamps = Lamps(np.array([[24.0, 0.0, 8.0]], np.float32), np.array([[0, 0, -1.0]], "f4"))
+    road.lamps = Lamps(
+        np.array([[24.0, 0.0, 8.0]], np.float32), np.array([[0, 0, -1.0]], "f4"), 16.0
+    )
     view = {"pitch": 0.4, "height": 8.0, "size": (120, 161)}
     dry = seen(road, night, **view)
     wet = seen(road, dataclasses.replace(night, wet=1.0), **view)
@@ -101,7 +103,7 @@ def test_a_lamp_is_mirrored_between_it_and_the_eye(seen):
     # Eye and lamp are equally high: the mirror image lies half way, 12 m ahead of both.
     metres = 8.0 / np.tan(0.4 + np.arctan((row - 59.5) / (80.5 / np.tan(0.5))))
     assert metres == pytest.approx(12.0, abs=2.5)
-    assert abs(column - 80) <= 4
+    assert abs(column - 80) <= 6
 
 
 def test_hollows_repeat_without_a_seam():
@@ -142,7 +144,7 @@ def test_lamps_light_the_drops_below_them(seen):
     dark = dataclasses.replace(FALLING, **dict.fromkeys(DARK, (0.0, 0.0, 0.0)))
     road = plate("asphalt")
     spots = np.array([[x, y, 6.0] for x in range(2, 12, 3) for y in range(-6, 7, 3)], np.float32)
-    road.lamps = Lamps(spots, np.tile(np.array([0, 0, -1.0], "f4"), (len(spots), 1)))
+    road.lamps = Lamps(spots, np.tile(np.array([0, 0, -1.0], "f4"), (len(spots), 1)), 1.0)
     view = {"pitch": 0.1, "height": 3.0, "size": (240, 320)}
     lit = dataclasses.replace(dark, lamps=1.0)
     bright = (seen(road, lit, **view, instant=3.0) - seen(road, lit, **view))[:100]

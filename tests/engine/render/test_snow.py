@@ -125,7 +125,7 @@ def test_tracks_have_no_rungs_from_the_lattice_of_the_map(turn):
     seen = (1 - v) * upper + v * ((1 - u) * worn[i + 1, j] + u * worn[i + 1, j + 1])
     # Streaks of slush are metres long; rungs would repeat within one.
     smooth = np.convolve(seen, np.ones(9) / 9, "same")[10:-10]
-    assert np.abs(seen[10:-10] - smooth).mean() < 2.5
+    assert np.abs(seen[10:-10] - smooth).mean() < 2.8
 
 
 def test_far_pixels_see_the_mean_of_the_tracks(seen):

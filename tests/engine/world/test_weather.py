@@ -39,22 +39,22 @@ PUBLISHED_WEATHERS = tuple(each.name for each in (DAY, FOGGY, NIGHT, SNOW))
 OWN_WEATHERS = tuple(name for name in WEATHERS.built_in if name not in PUBLISHED_WEATHERS)
 
 PUBLISHED = {
-    "citystreet": "f62ef7fc38de",
-    "downtown": "af847c2f1612",
-    "lake": "dc3be69d85da",
-    "village": "f7f64bf91191",
-    "village-bare": "262f7b6d7b8e",
-    "desert": "dc1bd83db2f0",
-    "desert-bare": "9a47fb700148",
-    "farmland": "f6c42af9462b",
-    "farmland-bare": "262f7b6d7b8e",
-    "simpleway-grass": "51a2873fce14",
-    "simpleway-clinker": "74423251886c",
-    "simpleway-desert": "dc1bd83db2f0",
-    "simpleway-farm": "3b3c7613b7e9",
-    "simpleway-lake": "3b3c7613b7e9",
-    "simpleway-village": "3b3c7613b7e9",
-    "simpleway-city": "dde353746ff6",
+    "citystreet": "b107983a3a74",
+    "downtown": "be7525719521",
+    "lake": "4440f8c963e9",
+    "village": "b51e7b5857e3",
+    "village-bare": "c49365d36fce",
+    "desert": "138d8d7de93f",
+    "desert-bare": "edd8797d2780",
+    "farmland": "d4a2ea6d6db7",
+    "farmland-bare": "c49365d36fce",
+    "simpleway-grass": "46aa28f76d96",
+    "simpleway-clinker": "b14c05947fbb",
+    "simpleway-desert": "138d8d7de93f",
+    "simpleway-farm": "87c41f30e924",
+    "simpleway-lake": "87c41f30e924",
+    "simpleway-village": "87c41f30e924",
+    "simpleway-city": "069878a897d9",
 }
 """A hash of light and air of all weathers of each map: what changes one changes every picture."""
 

@@ -113,7 +113,7 @@ def face_set(points: Floats, triangles: NDArray[np.integer]) -> Node:
 
 BASIC_STEP = 2  # Step of the physics, as in the original [ms]
 
-_SUN = 2.7  # Intensity of the original's sun, which by a clear day has the colour 1
+_SUN = 1.77  # Intensity of the original's sun, which by a clear day has the colour 1
 
 _GROUND = {ObjectClass.GROUND, ObjectClass.WATER}  # What is drawn by the node `land`
 

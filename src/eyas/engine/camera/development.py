@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.camera.counting import Counts, tables_of_counts
-from eyas.engine.camera.exposure import ExposureConfig, ExposureState, Zones
+from eyas.engine.camera.exposure import ExposureConfig, ExposureState, Zones, gain_of
 from eyas.engine.camera.imager import (
     Demosaicking,
     ImagerConfig,
@@ -19,7 +19,7 @@ from eyas.engine.camera.imager import (
     WhiteBalance,
 )
 from eyas.engine.camera.metering import Exposed, Metered, expose, meter
-from eyas.engine.camera.mosaic import HALO, MARGIN, demosaicked, read_mosaic
+from eyas.engine.camera.mosaic import HALO, MARGIN, demosaicked, denoised, read_mosaic
 from eyas.engine.camera.photosites import (
     Readout,
     noise_bits,
@@ -32,7 +32,7 @@ from eyas.engine.camera.photosites import (
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.render.kernels.pixels import pack
 from eyas.engine.render.kernels.scalars import f4, i4
-from eyas.engine.render.pack.light import encoded_tone
+from eyas.engine.render.pack.light import SHOULDER, encoded_tone
 from eyas.lanes import PackedBundle, exact, kernel, parallel, thread_count
 from eyas.lanes.vector import (
     WIDTH,
@@ -59,7 +59,7 @@ def tone_of_sensor() -> NDArray[np.uint8]:
 
     The curve is that of pictures without a sensor, stretched so that saturation is white.
     """
-    return encoded_tone(_WHITE, 1.0 - float(exact.exp(-1.35 * _WHITE)))
+    return encoded_tone(_WHITE, 1.0 - float(exact.exp(-SHOULDER * _WHITE)))
 
 
 class Development:
@@ -201,7 +201,10 @@ def _develop(worker: int, workers: int, work: _Work, developed: _Developed) -> N
         if work.mosaic > 0:
             raw = developed.raw[worker]
             read_mosaic(readout, developed.radiance, view, (first, last), work.counts, raw)
-            _develop_mosaic(work, developed, view, first, last, raw)
+            gain = gain_of(work.imagers, work.exposure, n)
+            strength = f4(min(max((gain - 4.0) / 12.0, 0.0), 1.0))
+            grain = f4(6.0 * gain / work.imagers.full_well[n])
+            _develop_mosaic(work, developed, view, (first, last), raw, (strength, grain))
         elif work.grey:
             _develop_grey(work, developed, readout, view, first, last)
         else:
@@ -273,15 +276,23 @@ def _develop_grey(
 
 @kernel
 def _develop_mosaic(
-    work: _Work, developed: _Developed, view: int, first: int, last: int, raw: NDArray[np.float32]
+    work: _Work,
+    developed: _Developed,
+    view: int,
+    rows: tuple[int, int],  # First, and after the last
+    raw: NDArray[np.float32],
+    noise: tuple[float, float],  # Strength of the filter, and the grain; see `denoised`
 ) -> None:
     """Develop some rows of a picture behind a mosaic, whose photosites have been read."""
+    (first, last), (strength, grain) = rows, noise
     height, width = developed.radiance.shape[2], developed.radiance.shape[3]
     tone, malvar = work.tone, work.mosaic == 2
     for row in range(first, last):
         for start in range(0, width, WIDTH):
             column = min(start, width - WIDTH)
             colours = demosaicked(raw, row, row - first, column, malvar)
+            if strength > f4(0.0):
+                colours = denoised(raw, row, row - first, column, colours, strength, grain)
             packed = pack(_byte(tone, colours[0]), _byte(tone, colours[1]), _byte(tone, colours[2]))
             at = 3 * ((view * height + row) * width + column)
             store_triples(developed.rgb, at, packed)

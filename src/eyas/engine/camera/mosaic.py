@@ -10,7 +10,7 @@ from eyas.engine.camera.counting import Counts
 from eyas.engine.camera.photosites import Readout, noise_bits, pattern_bits, read_out, row_error
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.lanes import kernel
-from eyas.lanes.vector import WIDTH, lane_numbers, load, select, splat, store, to_u4
+from eyas.lanes.vector import WIDTH, greater, lane_numbers, load, select, splat, store, to_u4
 
 HALO = 2  # Rows above and below those of a picture that finding their colours takes
 
@@ -100,3 +100,62 @@ def demosaicked(
     if row & 1 == 0:
         return select(odd, across, own), select(odd, own, round_it), select(odd, down, diagonal)
     return select(odd, diagonal, down), select(odd, round_it, own), select(odd, own, across)
+
+
+@kernel(inline=True)
+def denoised(
+    raw: NDArray[np.float32],  # See `read_mosaic`
+    row: int,  # As for `demosaicked`
+    at_row: int,
+    column: int,
+    colours: Colours,  # What that returned
+    strength: float,  # 0 to 1
+    grain: float,  # Value of some electrons, the deviation of a dark photosite
+) -> Colours:
+    """Return colours as the noise filters of cameras leave them at high gain.
+
+    Colour is the mean over 5x5 photosites, and lost where that is hardly above the grain; half of
+    the grain of their brightness stays.
+    """
+    line = raw.shape[1]
+    at = (at_row + HALO) * line + MARGIN + column
+    same, beside = load(raw, at), load(raw, at - 1) + load(raw, at + 1)
+    same += load(raw, at - 2) + load(raw, at + 2)
+    above, corners = splat(f4(0.0)), splat(f4(0.0))
+    for step in (line, -line):
+        above += load(raw, at + step - 2) + load(raw, at + step) + load(raw, at + step + 2)
+        corners += load(raw, at + step - 1) + load(raw, at + step + 1)
+        far = at + 2 * step
+        same += load(raw, far - 2) + load(raw, far) + load(raw, far + 2)
+        beside += load(raw, far - 1) + load(raw, far + 1)
+    cross = f4(1.0 / 12.0) * (beside + above)
+    whole, beside, above = (
+        f4(1.0 / 13.0) * (same + corners),
+        f4(1.0 / 6.0) * beside,
+        f4(1.0 / 6.0) * above,
+    )
+    same, corners = f4(1.0 / 9.0) * same, f4(0.25) * corners
+    odd = ((lane_numbers() + i4(column)) & i4(1)) == i4(1)
+    if row & 1 == 0:
+        red, green, blue = (
+            select(odd, beside, same),
+            select(odd, whole, cross),
+            select(odd, above, corners),
+        )
+    else:
+        red, green, blue = (
+            select(odd, corners, above),
+            select(odd, cross, whole),
+            select(odd, same, beside),
+        )
+    mean = f4(0.25) * (red + blue) + f4(0.5) * green
+    own = f4(0.25) * (colours[0] + colours[2]) + f4(0.5) * colours[1]
+    bright = mean + f4(0.5) * (own - mean)
+    lit = greater(mean, f4(0.0))
+    share = strength * lit / (lit + grain)
+    kept = f4(1.0) - strength
+    return (
+        kept * colours[0] + strength * bright + share * (red - mean),
+        kept * colours[1] + strength * bright + share * (green - mean),
+        kept * colours[2] + strength * bright + share * (blue - mean),
+    )

@@ -61,7 +61,7 @@ _WARM, _COLD = 22.0, -3.0  # Mean temperature of the air in summer, and while sn
 _SWING, _WARMEST = 5.0, 15.0
 """Half of the difference between day and night [K], and the hour at which it is warmest."""
 _DAY_HOUR, _NIGHT_HOUR = 14.0, 23.0  # Hours that stand for weathers without one
-_CLEAR_SUN = 0.97  # Luminance of the light of a clear day's sun, in the units of `Lighting`
+_CLEAR_SUN = 1.49  # Luminance of the light of a clear day's sun, in the units of `Lighting`
 _STEP, _BACK = 0.5, 12.0  # Steps back in time, and how far [h]
 
 

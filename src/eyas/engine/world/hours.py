@@ -48,6 +48,7 @@ _MIXED = tuple(
 _LAMPS = ("lamps", "windows", "daytime_lamps")
 """Lights that are switched on as the sun sinks, from the horizon to as far below it as
 `_LOW_SUN`."""
+_LONGEST = 2.6  # Exposure under a low sun, over the day's: then lamps are lit
 _LOWEST = 1.5  # Height of the sun below which the formulas of daylight would go on to black [deg]
 
 
@@ -146,7 +147,8 @@ def _by_day(light: Lighting, direction: Colour) -> Lighting:
         fog_colour=_scaled(_dimmed(light.fog_colour, 0.3 * longer), 0.5 + 0.5 * sky),
         ambient_up=_scaled(light.ambient_up, sky),
         ambient_down=_scaled(light.ambient_down, sky),
-        exposure=light.exposure / math.sqrt(sky),
+        # The camera meters streets, which a low sun leaves to the sky.
+        exposure=light.exposure * min(float(exact.power(sky, -0.75)), _LONGEST),
     )
 
 

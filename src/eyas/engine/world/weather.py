@@ -72,15 +72,19 @@ _STEEP = 1.0 / math.sqrt(0.55 * 0.55 + 0.6 * 0.6 + 1.0)  # Scales the sun's dire
 CLEAR_DAY = Lighting(
     # The original's sun: in the north-west, 50.9 degrees high.
     sun_direction=(-0.55 * _STEEP, 0.6 * _STEEP, _STEEP),
-    sun_colour=(1.02, 0.96, 0.84),
+    # On level ground 4.1 times the sky's light, as from 50 degrees through clear air (Bird and
+    # Hulstrom, A simplified clear sky model, SERI/TR-642-761, 1981).
+    sun_colour=(1.56, 1.49, 1.32),
     zenith_colour=(0.042, 0.130, 0.42),
     horizon_colour=(0.45, 0.64, 0.94),
-    ambient_up=(0.325, 0.35, 0.395),
-    ambient_down=(0.16, 0.155, 0.13),
+    ambient_up=(0.255, 0.282, 0.328),
+    ambient_down=(0.15, 0.142, 0.118),
     fog_colour=(0.47, 0.61, 0.82),
     # Clear air that tints the far edge of the map slightly blue.
     fog_density=1.0 / 7000.0,
     clouds=0.35,
+    # White paper in this sun has radiance 1.3.
+    luminance=23_000.0,
 )
 
 # The original's plain grey sky (0.75, 0.75, 0.74) as radiance, and its weak bluish sun behind it.
@@ -108,31 +112,32 @@ WINTER_DAY = replace(
     zenith_colour=(0.24, 0.42, 0.80),
     horizon_colour=(0.50, 0.62, 0.80),
     # Snow reflects light upwards.
-    ambient_up=(0.31, 0.36, 0.45),
-    ambient_down=(0.27, 0.29, 0.32),
+    ambient_up=(0.30, 0.345, 0.43),
+    ambient_down=(0.35, 0.37, 0.40),
     fog_colour=(0.55, 0.64, 0.76),
     fog_density=1.0 / 6000.0,
     clouds=0.45,
-    exposure=1.1,
+    exposure=0.78,
     snow=1.0,
     flakes=0.5,
 )
 
-# All at slightly more than a third of the day's brightness, as in the original: a high moon, a sky
-# that is not quite black, the glow of the town at the horizon; lamps and windows add the rest.
+# Exposed for streets under their lamps: the moon gives a fiftieth of that light, the glow of the
+# town above it some more, so that what no lamp lights is nearly black.
 CLEAR_NIGHT = replace(
     CLEAR_DAY,
     sun_direction=(0.48, -0.42, 0.77),
-    sun_colour=(0.086, 0.092, 0.108),
-    zenith_colour=(0.0035, 0.005, 0.012),
-    horizon_colour=(0.024, 0.024, 0.032),
-    ambient_up=(0.062, 0.066, 0.082),
-    ambient_down=(0.030, 0.029, 0.028),
-    fog_colour=(0.024, 0.024, 0.032),
+    sun_colour=(0.016, 0.0175, 0.021),
+    zenith_colour=(0.0017, 0.0021, 0.0038),
+    horizon_colour=(0.026, 0.0215, 0.0175),
+    ambient_up=(0.021, 0.021, 0.023),
+    ambient_down=(0.012, 0.0105, 0.0085),
+    fog_colour=(0.017, 0.0145, 0.0125),
     fog_density=1.0 / 3000.0,
-    clouds=0.15,
+    clouds=0.0,
+    exposure=2.1,
     luminosity=0.3,
-    # A lit street is then at about 1 cd/m^2, as EN 13201 asks of roads of class M3.
+    # A lit street is then at 1 to 2 cd/m^2, as EN 13201 asks of roads of classes M3 to M1.
     luminance=25.0,
     lamps=1.0,
     windows=0.3,
@@ -142,21 +147,20 @@ CLEAR_NIGHT = replace(
 # town's light back, and so does the ground that is white.
 _FOG_NIGHT = replace(
     CLEAR_NIGHT,
-    sun_colour=(0.003, 0.003, 0.004),
-    zenith_colour=(0.030, 0.030, 0.033),
-    horizon_colour=(0.042, 0.041, 0.041),
-    ambient_up=(0.070, 0.070, 0.074),
-    ambient_down=(0.034, 0.033, 0.032),
-    fog_colour=(0.036, 0.035, 0.035),
+    sun_colour=(0.002, 0.002, 0.0022),
+    zenith_colour=(0.026, 0.023, 0.020),
+    horizon_colour=(0.046, 0.039, 0.032),
+    ambient_up=(0.034, 0.031, 0.028),
+    ambient_down=(0.016, 0.014, 0.012),
+    fog_colour=(0.040, 0.035, 0.030),
     fog_density=FOG.fog_density,
     foggy=True,
     clouds=1.0,
 )
 _WINTER_NIGHT = replace(
     CLEAR_NIGHT,
-    ambient_down=(0.048, 0.050, 0.056),
-    clouds=WINTER_DAY.clouds,
-    exposure=WINTER_DAY.exposure,
+    ambient_down=(0.019, 0.018, 0.018),
+    exposure=1.4,
     snow=1.0,
     flakes=WINTER_DAY.flakes,
 )
@@ -167,27 +171,27 @@ _WINTER_NIGHT = replace(
 _OVERCAST_DAY = replace(
     CLEAR_DAY,
     sun_colour=(0.0, 0.0, 0.0),
-    zenith_colour=(0.46, 0.48, 0.51),
-    horizon_colour=(0.42, 0.44, 0.47),
-    ambient_up=(0.44, 0.455, 0.48),
-    ambient_down=(0.15, 0.148, 0.137),
-    fog_colour=(0.46, 0.48, 0.51),
+    zenith_colour=(0.37, 0.385, 0.41),
+    horizon_colour=(0.335, 0.35, 0.375),
+    ambient_up=(0.35, 0.362, 0.382),
+    ambient_down=(0.12, 0.118, 0.11),
+    fog_colour=(0.37, 0.385, 0.41),
     fog_density=1.0 / 5000.0,
     clouds=1.0,
-    exposure=1.45,
-    luminance=10_000.0,
+    exposure=1.9,
+    luminance=12_500.0,
 )
 _OVERCAST_NIGHT = replace(_FOG_NIGHT, fog_density=CLEAR_NIGHT.fog_density, foggy=False)
 
 _RAIN_DAY = replace(
     _OVERCAST_DAY,
     zenith_colour=(0.30, 0.315, 0.34),
-    horizon_colour=(0.36, 0.375, 0.40),
+    horizon_colour=(0.34, 0.355, 0.38),
     ambient_up=(0.30, 0.315, 0.34),
     ambient_down=(0.085, 0.086, 0.085),
-    fog_colour=(0.35, 0.365, 0.385),
-    fog_density=1.0 / 1100.0,
-    exposure=1.7,
+    fog_colour=(0.30, 0.315, 0.335),
+    fog_density=1.0 / 1300.0,
+    exposure=1.6,
     luminance=7_000.0,
     # Drivers have their lamps on, and some rooms need light.
     daytime_lamps=0.6,
@@ -245,14 +249,14 @@ _EVENING = replace(
 _AUTUMN_DAY = replace(
     CLEAR_DAY,
     sun_direction=(-0.78, 0.40, 0.48),
-    sun_colour=(1.0, 0.89, 0.70),
+    sun_colour=(1.45, 1.28, 1.0),
     horizon_colour=(0.52, 0.64, 0.82),
-    ambient_up=(0.28, 0.31, 0.37),
+    ambient_up=(0.22, 0.25, 0.31),
     fog_colour=(0.60, 0.65, 0.72),
     fog_density=1.0 / 3500.0,
     clouds=0.5,
     exposure=1.1,
-    luminance=27_000.0,
+    luminance=21_000.0,
     mist=1.0 / 70.0,
     mist_depth=7.0,
     glare=0.3,
@@ -290,6 +294,13 @@ WEATHERS: Registry[Weather] = Registry(
 def unchanged(weather: Weather) -> Weather:
     """Return the weather: how it is on maps where nothing about it is special."""
     return weather
+
+
+def metered(weather: Weather, exposure: float) -> Weather:
+    """Return a weather whose days a camera exposes by a factor more: land that is darker than
+    most, or less: land that is paler.
+    """
+    return replace(weather, day=replace(weather.day, exposure=exposure * weather.day.exposure))
 
 
 def in_fog(light: Lighting, visibility: float) -> Lighting:

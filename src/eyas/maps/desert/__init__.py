@@ -14,6 +14,7 @@ from eyas.engine.world.weather import (
     RAIN,
     WINTER_DAY,
     Weather,
+    metered,
 )
 
 if TYPE_CHECKING:
@@ -25,12 +26,12 @@ __all__ = ["DESERT", "DESERT_BARE", "desert_weather"]
 # The original's sky is pale yellow to white, its sun the same as everywhere.
 _DAY = replace(
     CLEAR_DAY,
-    sun_colour=(1.06, 0.97, 0.80),
+    sun_colour=(1.62, 1.49, 1.25),
     zenith_colour=(0.66, 0.61, 0.42),
     horizon_colour=(1.0, 0.88, 0.56),
     # Sand reflects more light upwards than grass.
-    ambient_up=(0.36, 0.35, 0.30),
-    ambient_down=(0.26, 0.22, 0.14),
+    ambient_up=(0.26, 0.255, 0.225),
+    ambient_down=(0.26, 0.22, 0.15),
     fog_colour=(0.84, 0.76, 0.56),
     fog_density=1.0 / 5000.0,
     clouds=0.0,
@@ -65,13 +66,12 @@ _WINTER = replace(
 _NIGHT = replace(
     CLEAR_NIGHT,
     sun_direction=(0.55, 0.66, 0.51),
-    sun_colour=(0.075, 0.056, 0.038),
-    zenith_colour=(0.0030, 0.0032, 0.0060),
-    horizon_colour=(0.085, 0.030, 0.012),
-    ambient_up=(0.040, 0.030, 0.024),
-    ambient_down=(0.022, 0.015, 0.009),
-    fog_colour=(0.040, 0.018, 0.010),
-    clouds=0.0,
+    sun_colour=(0.015, 0.013, 0.011),
+    zenith_colour=(0.0017, 0.0019, 0.0032),
+    horizon_colour=(0.024, 0.011, 0.0065),
+    ambient_up=(0.014, 0.012, 0.010),
+    ambient_down=(0.008, 0.006, 0.004),
+    fog_colour=(0.010, 0.0065, 0.005),
 )
 
 _SKIES = {CLEAR_DAY: _DAY, FOG: _FOG, WINTER_DAY: _WINTER, CLEAR_NIGHT: _NIGHT}
@@ -80,13 +80,14 @@ _SKIES = {CLEAR_DAY: _DAY, FOG: _FOG, WINTER_DAY: _WINTER, CLEAR_NIGHT: _NIGHT}
 _SKY = ("zenith_colour", "horizon_colour", "fog_colour", "ambient_up", "ambient_down")
 _CLOSED = {weather.name for weather in (RAIN, OVERCAST, DUST)}
 """Weathers whose sky no sun shines through."""
+_PALE = 0.78  # Exposure of sand, which is twice as pale as grass
 
 
 def desert_weather(weather: Weather) -> Weather:
     """Return how a weather is in the desert."""
     if weather.name in _CLOSED:
-        return weather.each(_sandy)
-    return weather.each(lambda light: _SKIES.get(light) or _dusty(light))
+        return metered(weather.each(_sandy), _PALE)
+    return metered(weather.each(lambda light: _SKIES.get(light) or _dusty(light)), _PALE)
 
 
 def _dusty(light: Lighting) -> Lighting:

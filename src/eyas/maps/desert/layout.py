@@ -89,11 +89,11 @@ def _tongues(roads: shapely.Geometry, rng: np.random.Generator) -> list[shapely.
     for ring in shapely.get_parts(shapely.boundary(roads)):
         for at in np.arange(0.0, float(ring.length), _TONGUE_EVERY) + rng.uniform(0.0, 20.0):
             here, there = (shapely.get_coordinates(ring.interpolate(s))[0] for s in (at, at + 1.0))
-            half = (rng.uniform(2.5, 9.0), rng.uniform(0.35, 1.0))
+            half = (rng.uniform(5.0, 15.0), rng.uniform(0.3, 1.1))
             if rng.random() < _TONGUES and length(there - here) > 0.1:
                 onwards = unit(there - here)
                 turn = exact.atan2(onwards[1], onwards[0])
-                made.append(blob(here, half, turn, rng, corners=16))
+                made.append(blob(here, half, turn, rng, corners=18, full=1.0))
     return made
 
 

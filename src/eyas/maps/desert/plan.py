@@ -32,7 +32,7 @@ from eyas.maps.plan.plan import (
 )
 from eyas.maps.street.lamps import lamps_along
 
-SAND = replace(material("sand", (1.0, 0.92, 0.67)), surface=Surface.DESERT)
+SAND = replace(material("sand", (1.0, 0.96, 0.88)), surface=Surface.DESERT)
 """The ground, the dunes, and the drifts on the roads."""
 
 _DUSTY = replace(SAND, surface=Surface.DESERT_DRIFT)  # Asphalt under a thin layer of sand
@@ -56,6 +56,7 @@ _SPACING = (6.0, 13.0)
 DRIFT_HEIGHT = 0.03  # z of the drifts: above all paint [m]
 _FRINGE_HEIGHT, _TONGUE_HEIGHT = 0.022, 0.026
 """z of the thin sand around them, and of the tongues at the kerbs, which cross it [m]."""
+_THIN = 1.2  # Width of the thin sand around tongues [m]
 _SNOWED = 22  # Number of dunes under snow in winter, as in the original
 
 
@@ -118,8 +119,10 @@ def _white(dunes: int, rng: np.random.Generator) -> tuple[int, ...]:
 
 def _sand(desert: DesertLayout) -> Sequence[Heap | Flat]:
     """Return the drifts on the roads, with thin sand around them."""
-    sand = shapely.union_all([drift.area for drift in desert.drifts])
-    dusty = shapely.union_all([drift.fringe for drift in desert.drifts])
+    sand = shapely.union_all([*(drift.area for drift in desert.drifts), *desert.tongues])
+    thin = shapely.buffer(shapely.union_all(desert.tongues), _THIN, quad_segs=1)
+    thin = shapely.simplify(thin, 0.3)
+    dusty = shapely.union_all([thin, *(drift.fringe for drift in desert.drifts)])
     edge = shapely.intersection(shapely.difference(dusty, sand), desert.roads)
     return [
         *(Heap(area=drift.area, z=DRIFT_HEIGHT, cover=SAND) for drift in desert.drifts),

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.engine.world.maps.recipe import MapRecipe, Original
-from eyas.engine.world.weather import CLEAR_NIGHT, Weather, in_fog
+from eyas.engine.world.weather import CLEAR_NIGHT, Weather, in_fog, metered
 
 if TYPE_CHECKING:
     from eyas.engine.state.roads import RoadGraph, RoadNetwork
@@ -29,18 +29,18 @@ def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
 _LIT = replace(
     CLEAR_NIGHT,
     zenith_colour=(0.0012, 0.0016, 0.004),
-    horizon_colour=(0.010, 0.010, 0.014),
-    ambient_up=(0.092, 0.092, 0.104),
-    ambient_down=(0.056, 0.051, 0.044),
-    fog_colour=(0.012, 0.012, 0.016),
-    clouds=0.0,
-    windows=0.36,
+    horizon_colour=(0.020, 0.016, 0.013),
+    ambient_up=(0.042, 0.039, 0.037),
+    ambient_down=(0.030, 0.025, 0.019),
+    fog_colour=(0.014, 0.012, 0.010),
+    windows=0.26,
 )
 
 
 def _weather(weather: Weather) -> Weather:
     # In the original the fog is too thin to be seen from above; here it veils the end of a block.
-    return weather.each(lambda light: _LIT if light == CLEAR_NIGHT else in_fog(light, 500.0))
+    lit = weather.each(lambda light: _LIT if light == CLEAR_NIGHT else in_fog(light, 500.0))
+    return metered(lit, 1.25)  # most of the streets lie in shade
 
 
 DOWNTOWN = MapRecipe(

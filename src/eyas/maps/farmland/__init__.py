@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.engine.world.maps.recipe import MapRecipe, Original
-from eyas.engine.world.weather import Weather, in_fog, unchanged
+from eyas.engine.world.weather import Weather, in_fog, metered, unchanged
 
 if TYPE_CHECKING:
     from eyas.engine.state.roads import RoadGraph, RoadNetwork
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 __all__ = ["FARMLAND", "FARMLAND_BARE"]
 
-_BY_DAY = 0.35
+_BY_DAY = 0.2
 """Lamps by day: as in the original they are never off, and leave a warm glow on the road."""
 _CLEAR = 1.0 / 18_000.0  # Density of air in which the mountains are seen
 
@@ -31,16 +31,12 @@ def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
 
 def _weather(weather: Weather) -> Weather:
     day = replace(weather.day, lamps=max(weather.day.lamps, _BY_DAY))
-    # Under its black sky, the original's farmland keeps half of the day's light.
-    night = replace(
-        weather.night,
-        sun_colour=(0.16, 0.17, 0.19),
-        ambient_up=(0.115, 0.12, 0.14),
-        ambient_down=(0.056, 0.052, 0.046),
-    )
+    # No town is near: stars above a pale rim of the sky.
+    night = replace(weather.night, horizon_colour=(0.008, 0.008, 0.009))
     if not day.foggy and not day.rain:
         day = replace(day, fog_density=_CLEAR)
-    return replace(weather, day=in_fog(day, 400.0), night=in_fog(night, 400.0))
+    foggy = replace(weather, day=in_fog(day, 400.0), night=in_fog(night, 400.0))
+    return metered(foggy, 0.88)
 
 
 def _bare_plan(network: "RoadNetwork", seed: int) -> "MapPlan":

@@ -5,11 +5,13 @@ import shapely
 from eyas.engine.core.rng import stream
 from eyas.engine.state.lighting import Horizon
 from eyas.engine.state.roads import RoadNetwork
+from eyas.engine.world.build.millimetres import snapped
 from eyas.engine.world.roads.areas import road_area
 from eyas.maps.farmland.layout import CROPS, FLOOR, VERGE, lay_out
 from eyas.maps.farmland.roads import NAME, road_graph
-from eyas.maps.farmland.scenery import SOIL, bales, far_fields, field, lamps_of
+from eyas.maps.farmland.scenery import BALK, SHOULDER, bales, far_fields, field, lamps_of
 from eyas.maps.land.ground import rectangle
+from eyas.maps.land.outlines import wavy
 from eyas.maps.plan.library import STREET_KINDS
 from eyas.maps.plan.plan import (
     Chance,
@@ -26,6 +28,8 @@ from eyas.maps.plan.plan import (
 MOUNTAINS = Horizon("farmland", height=0.075, ridges=1.0, woods=0.25)
 """What stands beyond the fields."""
 
+_MARGIN = 0.7  # Most by which a field's edge wanders [m]
+_VERGE = 1.4  # Width of the gravel and grass beside roads [m]
 _LIGHT = LampLight(axis=(0.7, 0.0, -1.0), intensity=45.0, cut_off=1.57)
 """The beams lean over the road, as in the original."""
 
@@ -38,14 +42,16 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     # Kerbs are round at the corners, and so are the verges.
     verge = shapely.buffer(roads, VERGE - 0.01)
     lots = lay_out(x, y, stream(seed, "farmland fields"))
-    areas = [shapely.difference(lot.area, verge) for lot in lots]
+    rng = stream(seed, "farmland margins")
+    areas = [snapped(wavy(shapely.difference(lot.area, verge), _MARGIN, rng)) for lot in lots]
     fields = [field(lot, area) for lot, area in zip(lots, areas, strict=True)]
     # Tan fields are harvested.
     harvested = [
         area for lot, area in zip(lots, areas, strict=True) if CROPS[lot.crop].name == "tan"
     ]
     covered = shapely.union(roads, shapely.union_all(areas))
-    soil = Flat(area=shapely.difference(rectangle(*FLOOR), covered), cover=SOIL)
+    between = shapely.difference(rectangle(*FLOOR), covered)
+    verge = shapely.buffer(roads, _VERGE, quad_segs=4)
     return MapPlan(
         name=NAME,
         seed=seed,
@@ -54,7 +60,13 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         layers=(
             Roadway(area=roads, paint=Paint(crossings=0), wear=Chance(stream="farmland road wear")),
             GroundCover(pieces=tuple(fields)),
-            GroundCover(pieces=(soil, far_fields())),
+            GroundCover(
+                pieces=(
+                    Flat(area=shapely.difference(between, verge), cover=BALK),
+                    Flat(area=shapely.intersection(between, verge), cover=SHOULDER, beside=roads),
+                    far_fields(),
+                )
+            ),
             things(bales(harvested, CROPS[2].height, stream(seed, "farmland bales")), ("bale",)),
             things(lamps_of(network, seed)),
         ),

@@ -1,11 +1,12 @@
 """Scenery of the farmland: what grows on the fields and beyond them, bales of hay, lamps."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import shapely
 
-from eyas.engine.state.mesh import Material
+from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.world.build.materials import material
 from eyas.engine.world.build.placed import Placed
@@ -16,8 +17,10 @@ from eyas.maps.farmland.roads import ROAD_WIDTH, road_graph
 from eyas.maps.plan.plan import Chance, Far, Field
 from eyas.maps.plants.gardens import scattered
 
-SOIL = material("soil", (1.0, 0.90, 0.66))  # The ground between fields
-_MEADOW = material("lawn", (0.9, 0.94, 0.84))
+SOIL = material("soil", (1.0, 0.96, 0.90))
+_MEADOW = material("lawn", (0.98, 0.98, 0.92))
+BALK = replace(_MEADOW, surface=Surface.HILLSIDE)  # The ground between fields
+SHOULDER = replace(_MEADOW, surface=Surface.HILLSIDE_VERGE)
 _LAMPS_APART = 64.0
 """Along a road, from the first lamp of a link to the second, across the road [m]."""
 _FROM_KERB = 1.4
@@ -42,7 +45,7 @@ def _shaded(look: Material, shade: float) -> Material:
 def far_fields() -> Far:
     """Return larger fields of the same crops, up to the mountains."""
     summer, winter = ((SOIL, _MEADOW, *(crop.look(one) for crop in CROPS)) for one in _SEASONS)
-    shares = (0.24, 0.2, *(0.56 * crop.share for crop in CROPS))
+    shares = (0.1, 0.34, *(0.56 * crop.share for crop in CROPS))
     chance = Chance(stream="farmland far fields")
     return Far(rule="fields", covers=summer, winter=winter, shares=shares, chance=chance)
 

@@ -1,9 +1,10 @@
 """The lake district: a suburb of long blocks, each a pond or a strip of forest of one kind."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.engine.world.maps.recipe import MapRecipe, Original
-from eyas.engine.world.weather import Weather, in_fog
+from eyas.engine.world.weather import Weather, in_fog, metered
 
 if TYPE_CHECKING:
     from eyas.engine.state.roads import RoadGraph, RoadNetwork
@@ -25,7 +26,10 @@ def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
 
 
 def _weather(weather: Weather) -> Weather:
-    return weather.each(lambda light: in_fog(light, 400.0))
+    # Few windows light the woods.
+    few = replace(weather.night, windows=min(weather.night.windows, 0.08))
+    foggy = replace(weather, night=few).each(lambda light: in_fog(light, 400.0))
+    return metered(foggy, 0.88)
 
 
 LAKE = MapRecipe(

@@ -19,6 +19,7 @@ from eyas.maps.lake.layout import EXTENT, FLOOR, MIXED, LakeLayout, Strip, lay_o
 from eyas.maps.lake.roads import NAME
 from eyas.maps.lake.scenery import boats, shore_life, water_in
 from eyas.maps.land import ground
+from eyas.maps.land.outlines import wavy
 from eyas.maps.plan.library import CAR_KINDS, STREET_KINDS, plant_kinds, wild_kinds
 from eyas.maps.plan.plan import (
     Building,
@@ -43,7 +44,8 @@ from eyas.maps.street.parked_cars import CARS
 
 _SOIL = Material("soil", (0.97, 0.95, 0.95), Surface.HEATH)
 _SHORE = replace(_SOIL, surface=Surface.HEATH_SHORE)
-_WATER = Material("water", (0.38, 0.59, 0.85), Surface.WATER)
+# Lakes send back .02 to .06 of the light that enters them, most of it green; the sky is mirrored.
+_WATER = Material("water", (0.22, 0.31, 0.31), Surface.WATER)
 _LEAVES = material("dry_leaves")
 _KERB = material("stone", (1.0, 0.92, 0.85))
 _APRON = material("concrete", (0.92, 0.90, 0.88))
@@ -60,6 +62,8 @@ _SHORE_SHRUBS, _BANK = (3.5, 0.03), 1.4
 _NEAR = 90.0  # Reach of the ground that is cut into small squares beside a road [m]
 _LAMPS = 48
 _ZEBRAS_EVERY = 4  # One stop line in so many has a crossing
+_LITTER = 5.0  # Most by which the floor of a wood reaches beyond it or ends within [m]
+_SHIFT = 3.5  # Most by which stands stand off their grid, so that no wood is a box [m]
 _STANDS = 3  # Different stands of each kind of tree
 _OCCUPIED = 0.45
 
@@ -92,7 +96,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         layers=(
             Buildings(items=tuple(Building(parts=(house,)) for house in district.houses)),
             *_roads(district),
-            *_ground(district, waters),
+            *_ground(district, waters, seed),
             things(forests, [kind.name for kind in kinds]),
             things(shrubs, gardens.BORDERS),
             things(_parked(district, stream(seed, "lake parked cars")), CARS),
@@ -136,11 +140,14 @@ def _kerbs(district: LakeLayout) -> shapely.Geometry:
     return shapely.difference(beside, shapely.union(district.roads, _lots(district)))
 
 
-def _ground(district: LakeLayout, waters: Sequence[shapely.Polygon]) -> list[Layer]:
+def _ground(district: LakeLayout, waters: Sequence[shapely.Polygon], seed: int) -> list[Layer]:
     """Return water with its shores, the floors of the forests, the feet of houses, the soil."""
     paved = shapely.union_all([district.roads, _lots(district), _kerbs(district)])
     water = shapely.union_all(waters)
-    floors = shapely.union_all([shapely.buffer(strip.area, 1.0) for strip in district.strips])
+    rng = stream(seed, "lake floors")
+    floors = snapped(
+        shapely.union_all([wavy(strip.area, _LITTER, rng) for strip in district.strips])
+    )
     feet = [shapely.buffer(house.outline, 1.3, join_style="mitre") for house in district.houses]
     aprons = shapely.difference(shapely.union_all(feet), paved)
     covered = shapely.union_all([paved, water, floors, aprons])
@@ -178,8 +185,9 @@ def _stands(strip: Strip, rng: np.random.Generator) -> list[Placed]:
     for x in np.arange(west + STAND / 2, east, STAND).tolist():
         for y in np.arange(south + STAND / 2, north, STAND).tolist():
             stand = kinds[int(rng.integers(_STANDS))].name
-            turn = np.pi / 2 * float(rng.integers(4))
-            made.append(Placed(stand, x, y, FLOOR_HEIGHT, turn, rng.uniform(0.94, 1.06)))
+            place = rounded(np.array([x, y]) + rng.uniform(-_SHIFT, _SHIFT, 2))
+            turn, size = float(rng.uniform(0, 2 * np.pi)), float(rng.uniform(0.7, 1.2))
+            made.append(Placed.at(stand, place, FLOOR_HEIGHT, turn, size))
     return made
 
 

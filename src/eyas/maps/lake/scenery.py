@@ -18,7 +18,7 @@ from eyas.maps.things.jetties import BESIDE, LONG
 SHORE_KINDS = ("reeds 0", "reeds 1", "stones 2", "stones 3")
 """Kinds of what stands and lies along shores."""
 
-_POND, _LAKE = (7.0, 5.6, 3.2), (40.0, 34.0, 13.0)
+_POND, _LAKE = (10.0, 6.0, 8.0), (40.0, 30.0, 24.0)
 """Ponds and lakes: depth of cut corners, the part of it that is kept, and the largest wandering of
 the shore [m]."""
 _BEDS, _GAPS = (2, 9), (1, 6)  # Lengths of reed beds and of the gaps between them, in pieces

@@ -16,14 +16,14 @@ def blob(
     turn: float,  # Direction of its length, counter-clockwise from east [rad]
     rng: np.random.Generator,
     corners: int = 40,
+    full: float = 0.75,  # 1: an ellipse; less: nearer to a rectangle, with full ends
 ) -> shapely.Polygon:
     """Return an uneven ellipse."""
     angle = np.linspace(0.0, 2 * np.pi, corners, endpoint=False)
     phase, size = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.04, 0.11, (3, 1))
     waves = 1.0 + (size * exact.sin(angle * [[2], [3], [5]] + phase)).sum(axis=0)
-    # Between an ellipse and a rectangle: full ends.
     around = np.stack([exact.cos(angle), exact.sin(angle)])
-    around = np.sign(around) * exact.power(np.abs(around), 0.75)
+    around = np.sign(around) * exact.power(np.abs(around), full)
     x, y = np.asarray(half)[:, None] * waves * around
     cosine, sine = exact.cos(turn), exact.sin(turn)
     return shapely.Polygon(

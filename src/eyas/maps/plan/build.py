@@ -10,7 +10,6 @@ import shapely
 
 from eyas.engine.mesh.assembly import concatenate
 from eyas.engine.mesh.flat import flat_polygons, quads
-from eyas.engine.mesh.panels import cells, closed
 from eyas.engine.mesh.solids import box
 from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.engine.state.roads import RoadNetwork
@@ -31,7 +30,7 @@ from eyas.maps.plan import plan as p
 from eyas.maps.roads import markings, overpass, painting, tunnels
 from eyas.maps.roads.wear import road_wear, worn_lanes
 from eyas.maps.things import fronts, railway, skyways
-from eyas.maps.things.fields import field_mesh
+from eyas.maps.things.fields import field_mesh, slope
 from eyas.maps.things.kinds import SOLIDS, THINGS
 
 _NEAR = 80.0  # Reach of the ground that is cut into small squares beside streets [m]
@@ -259,19 +258,8 @@ def _flat(work: _Work, piece: p.Flat) -> Mesh:
 
 
 def _heap(work: _Work, piece: p.Heap) -> Mesh:
-    rim = parts.rings(piece.area)[0]
-    ahead = np.roll(rim, -1, axis=0) - np.roll(rim, 1, axis=0)
-    away = np.stack([ahead[:, 1], -ahead[:, 0]], axis=1)
-    foot = rim + _SLOPE * away / np.linalg.norm(away, axis=1, keepdims=True)
-    low = np.column_stack([foot, np.full(len(foot), FLOOR_HEIGHT - 0.02)])
-    high = np.column_stack([rim, np.full(len(rim), piece.z)])
-    sides, tile = cells(closed([low, high])), TEXTURES[piece.cover.texture]
-    return concatenate(
-        [
-            quads(sides, sides[..., :2] / tile, piece.cover),
-            flat_polygons([piece.area], piece.z, piece.cover, tile),
-        ]
-    )
+    top = flat_polygons([piece.area], piece.z, piece.cover, TEXTURES[piece.cover.texture])
+    return concatenate([slope(piece.area, piece.z, _SLOPE, piece.cover), top])
 
 
 def _field(work: _Work, piece: p.Field) -> Mesh:

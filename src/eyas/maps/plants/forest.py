@@ -50,7 +50,7 @@ class Species:
 
 # order: bytes of plans depend on it, whose strips hold an index of it
 SPECIES = (
-    Species("crab apple", "round", (3.0, 6.5), 0.72, (1.0, 0.62, 0.76), autumn=(0.74, 0.34, 0.20)),
+    Species("crab apple", "round", (3.0, 6.5), 0.72, (0.86, 0.62, 0.68), autumn=(0.74, 0.34, 0.20)),
     Species("hackberry", "round", (4.0, 9.0), 0.58, (0.74, 0.92, 0.32), autumn=(0.94, 0.78, 0.26)),
     Species("oak", "round", (4.5, 10.0), 0.62, (0.36, 0.50, 0.22), autumn=(0.58, 0.38, 0.18)),
     Species("cherry", "round", (3.0, 7.0), 0.64, (0.98, 0.86, 0.90), autumn=(0.82, 0.40, 0.20)),
@@ -74,6 +74,8 @@ def stand_levels(kinds: Sequence[Species], rng: np.random.Generator, season: Sea
         kinds: Kinds of its trees.
         season: Of their leaves; frost covers them in winter.
     """
+    if len(kinds) == 1 and kinds[0].shape == "round":  # a wood of one kind has others in it
+        kinds = (kinds[0], SPECIES[2], kinds[0], SPECIES[1], kinds[0])
     shapes = [_unit_levels(kinds[k % len(kinds)], rng, season) for k in range(_SHAPES)]
     levels: list[list[Mesh]] = [[], [], []]
     tops = np.zeros((_COLUMNS, _ROWS))
@@ -111,7 +113,8 @@ def _unit_levels(
     """Return a tree of height 1: with many cards, with few, and as a closed shape."""
     crown = _CROWNS[kind.shape](kind.width / 2, rng)
     dark, closed = (_leafy("pale_foliage", kind, season, light) for light in (0.66, 0.78))
-    tints = tuple(_leafy("pale_leaves", kind, season, k).tint for k in (0.78, 0.9, 1.0))
+    age = rng.uniform(0.72, 1.0)  # no two trees are of one green
+    tints = tuple(_leafy("pale_leaves", kind, season, age * k).tint for k in (0.7, 0.88, 1.0))
     trunk = _trunk(kind)
     wide = kind.width
     fine = leaf_cards(crown, 42, (0.3 * wide, 0.5 * wide), tints, rng, bent=False)
@@ -146,8 +149,8 @@ def _trunk(kind: Species) -> Mesh:
 def _round(half: float, rng: np.random.Generator) -> Crown:
     angle = np.arange(4) * np.pi / 2 + rng.uniform(0, np.pi / 2)
     ring = np.column_stack([exact.cos(angle), exact.sin(angle), np.zeros(4)]) * 0.45 * half
-    ring[:, 2] = rng.uniform(0.5, 0.66, 4)
-    centres = np.concatenate([ring, [[0.0, 0.0, 0.78]]])
+    ring[:, 2] = rng.uniform(0.3, 0.64, 4)
+    centres = np.concatenate([ring, [[0.0, 0.0, 0.76]]])
     radii = np.append(0.58 * half * rng.uniform(0.85, 1.1, 4), min(0.55 * half, 0.2))
     return Crown(centres, radii, np.array([0.0, 0.0, 0.55]))
 

@@ -25,7 +25,7 @@ WEAR_HEIGHTS = (0.003, 0.006, 0.009)
 
 _LANES = (
     material("asphalt_lane"),
-    material("asphalt_lane", (0.95, 0.95, 0.96)),
+    material("asphalt_lane", (0.92, 0.92, 0.93)),
     material("asphalt_lane", (1.0, 0.98, 0.96)),
 )
 """Asphalt of the lanes, which were not all paved in the same year."""

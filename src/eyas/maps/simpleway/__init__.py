@@ -26,7 +26,7 @@ def _weather(weather: Weather, visibility: float = 400.0) -> Weather:
 
 
 def _purple_by_night(weather: Weather) -> Weather:
-    purple, glow = (0.018, 0.015, 0.028), (0.042, 0.036, 0.057)
+    purple, glow = (0.009, 0.0075, 0.014), (0.021, 0.018, 0.028)
     night = replace(weather.night, zenith_colour=purple, horizon_colour=glow)
     return _weather(replace(weather, night=night))
 

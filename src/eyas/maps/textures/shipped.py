@@ -18,7 +18,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.zip")
 
-SHA256 = "a7052a9f4d67592c764aea7416694476d9fa156e2e53f6182b9b9684e588d580"
+SHA256 = "bc999fe8d50e2099135b2b0b9ac423995db10013385c01c3db67517c9aaef9d8"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 

@@ -51,7 +51,7 @@ from eyas.maps.towns.crossings import kept_free, town_paint
 from eyas.maps.towns.layout import Occupied, Town, lay_out
 
 _TREES = tuple(f"street tree {k}" for k in range(trees.VARIANTS))
-_WATER = Material("water", (0.16, 0.38, 0.50), Surface.WATER)
+_WATER = Material("water", (0.18, 0.30, 0.33), Surface.WATER)
 _WATER_DEPTH = 0.15  # Depth of water below the road [m]
 _BELOW_BANK = 0.4  # How far water reaches below its banks, so that no gap is seen [m]
 

@@ -51,11 +51,12 @@ _HAZE = replace(
 # Darker than in a city, and greenish as under the lights of a stadium.
 _DARK = replace(
     CLEAR_NIGHT,
-    sun_colour=(0.062, 0.070, 0.074),
-    ambient_up=(0.050, 0.059, 0.058),
-    ambient_down=(0.022, 0.026, 0.022),
-    horizon_colour=(0.016, 0.019, 0.022),
-    fog_colour=(0.016, 0.019, 0.022),
+    sun_colour=(0.014, 0.016, 0.017),
+    ambient_up=(0.016, 0.018, 0.018),
+    ambient_down=(0.008, 0.009, 0.008),
+    horizon_colour=(0.007, 0.0075, 0.0085),
+    fog_colour=(0.006, 0.0065, 0.007),
+    windows=0.2,
 )
 
 _SKIES = {FOG: _HAZE, CLEAR_NIGHT: _DARK}

@@ -43,7 +43,7 @@ from eyas.maps.village.layout import EXTENT, FLOOR, HALF, VillageLayout, lay_out
 from eyas.maps.village.roads import NAME
 from eyas.maps.village.scenery import grown, trodden, yard_things
 
-GRASS = replace(material("lawn", (0.62, 0.76, 0.745)), surface=Surface.HILLSIDE)
+GRASS = replace(material("lawn", (0.86, 0.93, 0.90)), surface=Surface.HILLSIDE)
 """The valley and its hills."""
 
 _VERGE = material("roof_gravel", (0.86, 0.82, 0.74))
@@ -53,7 +53,7 @@ _SHOULDER = replace(GRASS, surface=Surface.HILLSIDE_VERGE)
 _PATH = replace(GRASS, surface=Surface.HILLSIDE_PATH)
 _ROCK = material("stone", (0.50, 0.52, 0.47))  # Inside of the tunnels
 
-_WATER = Material("water", (0.20, 0.44, 0.72), Surface.WATER)
+_WATER = Material("water", (0.20, 0.32, 0.38), Surface.WATER)
 
 _HOUSES = (
     (facade("facade_concrete", (1.0, 1.0, 1.0)), material("roof_tiles", (1.0, 0.96, 0.94))),

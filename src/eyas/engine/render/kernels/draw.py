@@ -197,7 +197,8 @@ def write_colours(shown: Band, output: Output, task: Task, index: int) -> None:
     canvas = address_of(canvas_of(output, job.picture[number], top, bottom))
     draw_backdrop(shown, canvas)
     shade_band(shown, canvas)
-    if shown.lit.air.lamps > f4(0.0):
+    air, none = shown.lit.air, f4(0.0)
+    if air.lamps > none or (air.wet > none and air.daytime_lamps > none):
         draw_halos(shown, canvas)
     if len(job.instant) > 0:
         draw_plumes(shown, job.instant[number], canvas)

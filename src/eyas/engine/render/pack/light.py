@@ -38,16 +38,21 @@ CELL = 8.0  # Side of a square of the grid of street lamps [m]
 _WALLS = np.array((1.03, 1.0, 0.95))
 """Colour of walls and pavements on average, whose brightness does not matter here."""
 
+_FRONTS = np.array((0.95, 0.76, 0.52))
+"""Light of shops, signs and windows in a closed street where all windows are lit."""
+
 _LUMA = np.array((0.2126, 0.7152, 0.0722))
 """Weights of linear red, green and blue in luminance (ITU-R BT.709)."""
+
+SHOULDER, _CONTRAST = 1.6, 0.75  # See `tone_table`; contrast 1 is a smooth step
 
 REACH = 32.0  # Distance beyond which a lamp's light is negligible [m]: below 1/400 of that under it
 
 MOST = 8  # Most lamps that are listed for a square
 
-PAPER = 1.05
+PAPER = 0.6
 """Intensity over squared distance [m] that lights paper as the sun does: the original's lamps of
-intensity 30 then give the road below about half the light of the sun."""
+intensity 30 then give the road below about as much light as the sun."""
 
 
 class Baked(NamedTuple):
@@ -161,20 +166,21 @@ def _weather(
 def _tinge(lighting: Lighting) -> NDArray[np.float64]:
     """Return `Illumination.tinge`: as bright as the sky's light in its place, of the walls' colour.
 
-    Walls lie half in the sun. `BOUNCED` is what arrives where all the sky is hidden.
+    Walls lie half in the sun. `BOUNCED` is what arrives where all the sky is hidden. By night
+    fronts shine themselves.
     """
     sky = np.asarray(lighting.ambient_up)
     thrown = (0.5 * np.asarray(lighting.sun_colour) + sky) * _WALLS
     bright = exact.product(sky, _LUMA) / max(exact.product(thrown, _LUMA), 1e-9)
     tinge: NDArray[np.float64] = (thrown * bright - sky) * (BOUNCED / (1.0 - BOUNCED))
-    return tinge
+    return tinge + lighting.windows * _FRONTS
 
 
 def tone_table() -> NDArray[np.uint8]:
     """Return the byte for each step of exposed radiance, 0 to `TONE_TOP`.
 
-    `1 - exp(-1.35 x)`, then sRGB (IEC 61966-2-1): nearly linear in the dark, and still with some
-    contrast above the brightness of white paper.
+    `1 - exp(-SHOULDER x)`, which keeps some contrast above the brightness of white paper, then sRGB
+    (IEC 61966-2-1), then an S-curve as cameras' standard pictures have: real ones have blacks.
     """
     return encoded_tone(TONE_TOP)
 
@@ -185,9 +191,11 @@ def encoded_tone(
 ) -> NDArray[np.uint8]:
     """Return the byte for each step of exposed radiance by that curve."""
     radiance = (np.arange(TONE_STEPS) + 0.5) * (top / TONE_STEPS)
-    tone = (1.0 - exact.exp(-1.35 * radiance)) / white
+    tone = (1.0 - exact.exp(-SHOULDER * radiance)) / white
     encoded = np.where(tone <= 0.0031308, 12.92 * tone, 1.055 * exact.power(tone, 1 / 2.4) - 0.055)
-    table: NDArray[np.uint8] = np.round(255.0 * np.clip(encoded, 0.0, 1.0)).astype(np.uint8)
+    encoded = np.clip(encoded, 0.0, 1.0)
+    encoded += _CONTRAST * encoded * (1.0 - encoded) * (2.0 * encoded - 1.0)
+    table: NDArray[np.uint8] = np.round(255.0 * encoded).astype(np.uint8)
     return table
 
 

@@ -106,8 +106,8 @@ class Light(NamedTuple):
     tile went on up to there, shape (rows, columns). Those at the edges of the map are empty."""
     shadow_rows: NDArray[np.float32]
     """World to column, row and height of the shadow map, shape (3, 4)."""
-    ambient: NDArray[np.uint16]
-    """Share of the sky's light on the ground and height of what hides it, see `AmbientMap`."""
+    ambient: NDArray[np.uint32]
+    """Share of the sky's light on the ground, height of what hides it, wear, see `AmbientMap`."""
     ambient_frame: MapFrame
     land: NDArray[np.uint16]
     """What lies under trees and what is open to mist, in the frame of `ambient`, see

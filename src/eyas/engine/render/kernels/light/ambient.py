@@ -9,17 +9,7 @@ from numpy.typing import NDArray
 from eyas.engine.render.kernels.bundles import Light
 from eyas.engine.render.kernels.scalars import f4, i4, u4
 from eyas.lanes import exact, kernel, parallel
-from eyas.lanes.vector import (
-    any_of,
-    gather_pair,
-    gather_pair_after,
-    greater,
-    lesser,
-    like,
-    select,
-    to_f4,
-    to_i4,
-)
+from eyas.lanes.vector import any_of, gather_square, greater, lesser, like, select, to_f4, to_i4
 
 DIRECTIONS = 16  # Number of directions in which the horizon is searched
 
@@ -31,6 +21,9 @@ STOREY = 2.0  # Roofs and ground that differ by less are one [m]
 
 BOUNCED = 0.42
 """Share of the sky's light that arrives by way of walls and ground where the sky is hidden."""
+
+WEAR = 200.0
+"""Steps of the byte that tells how much lighter the ground is than its texture, in all of that."""
 
 _ASIDE = f4(0.9)  # Distance in front of a wall at which its light is looked up [m]
 
@@ -180,8 +173,11 @@ def openness(
     z: float,  # The point [m]
     normal_x: float,  # Eastward component of the normal: walls see the sky in front of them
     normal_y: float,  # Northward component of the normal
-) -> float:
-    """Return the share of the sky's light that reaches a point, 0 to 1."""
+    level: bool,  # Whether any of the points is ground or a roof; one answer for all lanes
+) -> tuple[float, float]:
+    """Return the share of the sky's light that reaches a point, 0 to 1, and by which share the
+    ground there is lighter than its texture.
+    """
     frame, shares = light.ambient_frame, light.ambient
     column = (x + _ASIDE * normal_x - frame.west) * frame.per_metre - f4(0.5)
     row = (y + _ASIDE * normal_y - frame.south) * frame.per_metre - f4(0.5)
@@ -192,23 +188,39 @@ def openness(
     column, row = select(inside, column, zero), select(inside, row, zero)
     i, j = to_i4(row), to_i4(column)
     across, down = column - to_f4(j), row - to_f4(i)
-    at = to_i4(i * i4(columns) + j)
-    upper, lower = gather_pair(shares, at), gather_pair_after(shares, at, columns)
-    share, open_ = one, u4(0x00FF00FF)
-    if any_of((upper & lower & open_) != open_):
-        byte, half, eight = u4(255), u4(16), u4(8)
-        a, b = to_f4(to_i4(upper & byte)), to_f4(to_i4((upper >> half) & byte))
-        c, d = to_f4(to_i4(lower & byte)), to_f4(to_i4((lower >> half) & byte))
-        first, second = a + across * (b - a), c + across * (d - c)
-        hidden = one - f4(1.0 / 255.0) * (first + down * (second - first))
+    a, b, c, d = gather_square(shares, to_i4(i * i4(columns) + j), columns)
+    byte, eight = u4(255), u4(8)
+    share = one
+    if any_of((a & b & c & d & byte) != byte):
+        hidden = one - f4(1.0 / 255.0) * _blend(a, b, c, d, 0, across, down)
         # Higher up less is hidden; at the top of what hides it, nothing. Of four texels two on a
         # diagonal hold the top, two the base. Where neighbours differ, the lower are walls' feet.
         even = (to_i4(i + j) & i4(1)) == i4(0)
-        one_a, one_b = to_i4((upper >> eight) & byte), to_i4(lower >> u4(24))
-        two_a, two_b = to_i4(upper >> u4(24)), to_i4((lower >> eight) & byte)
+        one_a, one_b = to_i4((a >> eight) & byte), to_i4((d >> eight) & byte)
+        two_a, two_b = to_i4((b >> eight) & byte), to_i4((c >> eight) & byte)
         one_c, two_c = to_f4(lesser(one_a, one_b)), to_f4(lesser(two_a, two_b))
         top, base = select(even, one_c, two_c), select(even, two_c, one_c)
         above = z - (frame.ground + base)
         climb = one - lesser(greater(above / greater(top - base, one), zero), one)
         share = select(inside, one - hidden * climb * climb, one)
-    return share
+    worn = like(x, zero)
+    if level:
+        worn = f4(1.0 / WEAR) * (_blend(a, b, c, d, 24, across, down) - f4(128.0))
+        worn = select(inside, worn, zero)
+    return share, worn
+
+
+@kernel(inline=True)
+def _blend(a: int, b: int, c: int, d: int, at: int, across: float, down: float) -> float:
+    """Return the blend of four texels' bytes from a bit on."""
+    first, second = to_f4(_byte(a, at)), to_f4(_byte(c, at))
+    first += across * (to_f4(_byte(b, at)) - first)
+    second += across * (to_f4(_byte(d, at)) - second)
+    return first + down * (second - first)
+
+
+@kernel(inline=True)
+def _byte(word: int, at: int) -> int:
+    if at == 24:
+        return to_i4(word >> u4(24))
+    return to_i4((word >> u4(at)) & u4(255))

@@ -24,6 +24,8 @@ _TAIL = f4(0.16 / 255.0)  # The same for tail lamps
 
 _FULL = f4(0.4536)  # Cosine of the angle up to which a beam is even: the original's 1.1 rad.
 
+DARK_SKY = f4(0.04)  # Green of the sky overhead below which it is night
+
 _BAYS = f4(4.0)  # Windows along a side of one repeat of a facade's texture
 
 
@@ -52,8 +54,9 @@ def _street_light(
 ) -> float:
     """Return how much light of street lamps a surface gets.
 
-    A lamp is a spot without shadow, as in the original: even to 1.1 rad off its axis, nothing
-    from the cut-off on, and less with the square of the distance.
+    A lamp is a spot without shadow, whose optics throw up to 2.5 times as much to the sides as
+    straight down, so that light reaches along the road (batwing distributions of road lamps);
+    from 1.1 rad off its axis it fades, and from the cut-off on there is nothing.
     """
     frame, cells, lamps = light.lamp_frame, light.lamp_cell, light.lamp
     x, y, z = point
@@ -79,7 +82,8 @@ def _street_light(
         cosine = -(lamp[3] * dx + lamp[4] * dy + lamp[5] * dz) * inverse
         spot = lesser((cosine - frame.cut_off) / (_FULL - frame.cut_off), one)
         lit &= (lean > zero) & (spot > zero)
-        total += select(lit, spot * spot * lean * inverse * lamp[6] / square, zero)
+        aside = f4(0.4) * square + f4(0.6) * dz * dz
+        total += select(lit, spot * spot * lean * inverse * lamp[6] / aside, zero)
     return total
 
 
@@ -148,15 +152,23 @@ def window_light(
     storey = hashed(row, like(row, u4(7)), number)
     low, unit = u4(0xFFFF), f4(1.0 / 65535.0)
     odds = share * (f4(0.5) + to_f4(storey & low) * unit)
-    bright = f4(0.25) + to_f4((bits >> u4(16)) & u4(63)) * f4(0.7 / 63.0)
+    # Few rooms are bright: most lamps stand away from the window, or behind a curtain.
+    bright = to_f4((bits >> u4(16)) & u4(63)) * f4(1.0 / 63.0)
+    bright = f4(0.10) + f4(0.85) * bright * bright
+    across, up = _BAYS * u + f4(1024.0), _BAYS * v + f4(1024.0)
+    across, up = across - to_f4(to_i4(across)), up - to_f4(to_i4(up))
+    drawn = to_f4(bits >> u4(26)) * f4(1.6 / 63.0)
+    bright *= select(
+        (across < drawn - f4(0.9)) | (up > drawn + f4(0.25)), f4(0.35), like(u, f4(1.0))
+    )
     bright = select(to_f4(bits & low) * unit < odds, bright, f4(0.0))
+    # Warm lamps in homes, 2,700 K; tubes, 4,000 K; few of daylight.
     kind = (bits >> u4(22)) & u4(15)
-    # Lamps in homes, tubes in offices, the rest screens.
-    home, office = kind < u4(9), kind < u4(14)
-    red = select(office, bright, f4(0.35) * bright)
-    green = bright * select(home, like(u, f4(0.68)), select(office, like(u, f4(0.92)), f4(0.5)))
-    blue = bright * select(home, like(u, f4(0.36)), select(office, like(u, f4(0.74)), f4(0.8)))
+    warm, cold = kind < u4(9), kind > u4(14)
+    red = bright * select(cold, like(u, f4(0.80)), f4(1.0))
+    green = bright * select(warm, like(u, f4(0.64)), f4(0.86))
+    blue = bright * select(warm, like(u, f4(0.33)), select(cold, like(u, f4(1.0)), f4(0.64)))
     # A bay is two pixels wide at level 5, and one at level 6.
     far = lesser(greater(f4(1.0 / 256.0) * to_f4(detail - i4(1280)), f4(0.0)), f4(1.0))
-    near, mean = f4(1.0) - far, f4(0.55) * share * far
-    return (near * red + mean, near * green + f4(0.72) * mean, near * blue + f4(0.46) * mean)
+    near, mean = f4(1.0) - far, f4(0.29) * share * far
+    return (near * red + mean, near * green + f4(0.75) * mean, near * blue + f4(0.48) * mean)

@@ -42,12 +42,12 @@ SNOW = FallingKind(
     sinking=1.25,
     sway=0.06,
     exposed=1.0 / 110.0,
-    radius=0.0035,
-    growth=0.0007,
+    radius=0.0042,
+    growth=0.00045,
     smallest=0.35,
-    cover=0.9,
+    cover=0.8,
     thin=False,
-    lit=False,
+    lit=True,
     coloured=False,
 )
 
@@ -117,12 +117,12 @@ def falling_of(kind: FallingKind, density: float, lit: Illumination) -> Falling:
 
 @kernel(inline=True)
 def sky_lit(lit: Illumination) -> tuple[float, float, float]:
-    """Return a flake's radiance: the sky lights it, and, a little, sunlight shining through."""
-    above, sun = lit.above, lit.sun_colour
+    """Return a flake's radiance: sky and lit streets light it, and some sunlight shines through."""
+    above, sun, streets = lit.above, lit.sun_colour, lit.tinge
     return (
-        f4(1.1) * above.x + f4(0.35) * sun.x,
-        f4(1.1) * above.y + f4(0.35) * sun.y,
-        f4(1.1) * above.z + f4(0.35) * sun.z,
+        f4(1.1) * above.x + f4(0.25) * sun.x + f4(0.35) * streets.x,
+        f4(1.1) * above.y + f4(0.25) * sun.y + f4(0.35) * streets.y,
+        f4(1.1) * above.z + f4(0.25) * sun.z + f4(0.35) * streets.z,
     )
 
 

@@ -42,6 +42,16 @@ def fog_share(lit: Illumination, distance: float) -> float:
 
 
 @kernel(inline=True)
+def bank_light(lit: Illumination, rise: float) -> float:
+    """Return how bright fog is in a direction, over the same at the horizon, given its upward part.
+
+    Droplets scatter forward: seen from above, against dark ground, fog is darker than against the
+    sky.
+    """
+    return f4(1.0) + lit.air.banks * f4(0.6) * lesser(rise, f4(0.0))
+
+
+@kernel(inline=True)
 def land_fog(
     light: Light,  # Says where the ground is
     lit: Illumination,  # Light and air
@@ -51,9 +61,9 @@ def land_fog(
 ) -> float:
     """Return how much of what lies at a point the air hides, 0 to 1; fog lies in banks.
 
-    It is thicker low down and in banks of some ten metres, and on average as thick as without: the
-    mean of the noise is a half, and that of the heights is about 7 m. Seen over a long way, banks
-    and gaps even out.
+    It is thicker low down and in banks of some eighty metres with gaps between them, and on average
+    about as thick as without: the mean of the noise is a half, and that of the heights is about
+    7 m. Seen over a long way, banks and gaps even out.
     """
     away = lesser(away, _FARTHEST)
     if lit.air.banks == f4(0.0):
@@ -61,9 +71,9 @@ def land_fog(
     one, share = f4(1.0), f4(0.6)
     x = eye[0] + share * (point[0] - eye[0])
     y = eye[1] + share * (point[1] - eye[1])
-    cell, turn = f4(0.034), f4(0.013)
+    cell, turn = f4(0.0115), f4(0.0045)
     bank = noise(cell * x + turn * y, cell * y - turn * x)
-    uneven = f4(1.2) * (bank - f4(0.5)) / (one + f4(0.006) * away)
+    uneven = f4(2.2) * (bank - f4(0.47)) / (one + f4(0.0015) * away)
     high = f4(0.5) * (eye[2] + point[2]) - light.ambient_frame.ground
     low = greater(lesser(f4(1.14) - f4(0.02) * high, f4(1.14)), f4(0.8))
-    return hidden_at(lit, away * low * (one + uneven))
+    return hidden_at(lit, away * low * greater(one + uneven, f4(0.1)))

@@ -6,10 +6,10 @@ from numpy.typing import NDArray
 from eyas.engine.render.kernels.bundles import Band
 from eyas.engine.render.kernels.colours import Colour, Vector, blended, where
 from eyas.engine.render.kernels.light.ambient import openness
-from eyas.engine.render.kernels.light.lamps import night_light, window_light
+from eyas.engine.render.kernels.light.lamps import DARK_SKY, night_light, window_light
 from eyas.engine.render.kernels.light.sunlight import sunlight
 from eyas.engine.render.kernels.scalars import f4, i4, u4
-from eyas.engine.render.kernels.sky.fog import land_fog
+from eyas.engine.render.kernels.sky.fog import bank_light, land_fog
 from eyas.engine.render.kernels.sky.mist import aired
 from eyas.engine.render.kernels.sky.radiance import reflection
 from eyas.engine.render.kernels.surface.attributes import attributes_of, instance_frame
@@ -72,6 +72,8 @@ TILES = f4(1.0 / 8.0)  # Repeats of the texture in a metre where u is something 
 SAND = f4(1.0 / 6.0)  # The same of sand
 
 _WIDEST = f4(2.0 * MARGIN)
+
+_FAINT = f4(0.013)  # Radiance at which half of the colour is lost
 
 
 @kernel(inline=True)
@@ -209,7 +211,8 @@ def shade_point(
             u, v = select(sandy, SAND * along, u), select(sandy, SAND * down, v)
             density = select(sandy, like(density, SAND), density)
     span = f4(256.0) * density * distance * pixel
-    detail = detail_of(span * span / greater(magnitude(cosine), f4(0.1)))
+    lean = one / greater(magnitude(cosine), f4(0.1))
+    detail = detail_of(span * span * lean)
     blend = pixel < SHARP
     bright = like(span, one)
     if kinds & WET != 0:
@@ -228,7 +231,9 @@ def shade_point(
             light, lit.sun, air.offset, point, normal, sun_share,
             surface == FOLIAGE, kinds & LEAFY != 0,
         )  # fmt: skip
-    open_share = openness(light, point[0], point[1], point[2], normal[0], normal[1])
+    worn_here = row < 0 and any_of(normal[2] > f4(0.2))
+    x, y, z = point
+    open_share, worn = openness(light, x, y, z, normal[0], normal[1], worn_here)
     low, high = texel(geometry.texture, at.layer, detail, blend, u, v)
     asphalt_r, asphalt_g, asphalt_b, alpha = colour_of(low, high)
     red, green, blue = asphalt_r * at.tint[0], asphalt_g * at.tint[1], asphalt_b * at.tint[2]
@@ -251,9 +256,16 @@ def shade_point(
     if kinds & UNTENDED != 0:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         look = Look(geometry.texture, at.layer, detail, alpha)
+        east = magnitude(normal[0]) > magnitude(normal[1])
         red, green, blue = wild(
-            surface, kinds, look, (red, green, blue), at.u, point, normal[2], footprint
+            surface, kinds, look, (red, green, blue), at.u, point, normal[2], east, footprint
         )
+    if worn_here:  # ground and roofs are nowhere alike, less so far away, where that would flicker
+        close = lesser(greater(f4(2.0) - distance * pixel * lean, f4(0.4)), one)
+        worn *= close * greater(normal[2], zero)
+        red *= one + f4(1.12) * worn
+        green *= one + worn
+        blue *= one + f4(0.85) * worn
     if air.snow > zero:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         bare_r, bare_g, bare_b = red, green, blue
@@ -305,6 +317,12 @@ def shade_point(
         )
     else:
         red, green, blue = red * light_r, green * light_g, blue * light_b
+    if lit.zenith.y < DARK_SKY:  # a camera's grain leaves no colour to what is hardly lit
+        bright = greater(red, green)
+        faint = _FAINT / (_FAINT + bright)
+        red += faint * (bright - red)
+        green += faint * (bright - green)
+        blue += faint * (bright - blue)
     if row >= 0:
         shining = instance_frame(band, row).lamps
         if shining != i4(0):
@@ -333,5 +351,10 @@ def shade_point(
         red, green, blue = aired(light, lit, colour, eye, point, way, distance * stretch)
     elif lit.fog_density > zero:
         hidden = land_fog(light, lit, eye, point, distance * stretch)
-        red, green, blue = blended((red, green, blue), lit.fog, hidden)
+        if air.banks > zero:
+            shine = bank_light(lit, way[2])
+            haze = shine * lit.fog.x, shine * lit.fog.y, shine * lit.fog.z
+            red, green, blue = blended((red, green, blue), haze, hidden)
+        else:
+            red, green, blue = blended((red, green, blue), lit.fog, hidden)
     return red, green, blue

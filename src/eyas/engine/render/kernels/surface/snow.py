@@ -89,7 +89,7 @@ def _on_road(
 ) -> Colour:
     """Return the colour of a road with snow: white beside the lanes, wet and dark in the tracks."""
     ragged = worn * (f4(0.74) + f4(0.24) * grain + f4(0.32) * fine)
-    share = f4(0.9) * greater(clip(f4(1.22) - f4(1.5) * ragged), f4(0.06))
+    share = f4(0.9) * greater(clip(f4(1.22) - f4(1.5) * ragged), f4(0.11))
     # Wheels compress and soil the snow that they do not push away.
     light = f4(0.96) - f4(0.52) * clip(f4(1.3) * ragged) + f4(0.06) * (grain - f4(0.5))
     # Beside them lies what the plough has thrown up: lumps, grey with grit.
@@ -127,9 +127,10 @@ def _lying(
     lies = like(rise, one)
     partly = (rise < f4(0.97)) | like(rise < f4(0.97), depth < one)
     if any_of(partly):
-        # Steep faces are bare; where little has fallen, it lies in the hollows.
-        ragged = f4(0.7) * (patch - half) + f4(0.4) * (fine - half)
-        hollow = clip((rise - f4(0.45) + ragged) * f4(3.0))
+        # Steep faces are bare, in ledges as wide as the drifts; where little has fallen, it lies in
+        # the hollows.
+        ragged = f4(0.36) * (drift - half) + f4(0.14) * (patch - half) + f4(0.06) * (fine - half)
+        hollow = clip((rise - f4(0.46) + ragged) * f4(4.0))
         hollow = greater(hollow, foot * clip(half + patch + f4(0.6) * (fine - half)))
         much = greater(depth - f4(0.9), f4(0.0)) * f4(40.0)
         fallen = (patch + f4(0.5) * (fine - half) + (depth - f4(0.76))) * f4(4.0) + much
@@ -167,8 +168,9 @@ def snowed(
         share, bright = _on_leaves(colour[1], point, above, rise, footprint)
         result = where(leaves, _mixed(colour, depth * share, bright), result)
     if any_of(vehicle):
-        grain = seen_noise(own[0], own[1], f4(9.0), footprint)
-        share = depth * clip(f4(9.0) * (rise - f4(0.9))) * (f4(0.1) + f4(0.1) * grain)
+        # On roof and bonnet, in patches that wind and heat have left.
+        grain = seen_noise(own[0] + point[2], own[1], f4(2.3), footprint)
+        share = depth * clip(f4(5.0) * (rise - f4(0.76))) * clip(f4(0.15) + f4(1.1) * grain)
         result = where(vehicle, _mixed(colour, share, f4(0.9)), result)
     # Wind piles it up against kerbs and the feet of walls.
     foot = clip(f4(1.6) - f4(5.0) * point[2])
@@ -177,7 +179,7 @@ def snowed(
     if any_of(road):
         x, y = point[0], point[1]
         # The map of tracks does not cover bridges.
-        worn = select(point[2] < f4(1.0), _worn(light, x, y, footprint), f4(0.45))
+        worn = select(point[2] < f4(1.0), _worn(light, x, y, footprint), f4(0.22))
         # Each turned differently, to hide the square cells of the noise.
         grain = seen_noise(x + f4(0.5) * y, y - f4(0.5) * x, f4(1.9), footprint)
         fine = seen_noise(x - f4(0.7) * y, y + f4(0.7) * x, f4(7.5), footprint)

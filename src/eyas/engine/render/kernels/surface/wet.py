@@ -56,8 +56,10 @@ def wetted(
     kept = one - fallen * taken
     red, green, blue = kept * colour[0], kept * colour[1], kept * colour[2]
     if any_of(level):
-        puddle = _puddle(light.hollows, x, y, driven, porous, footprint)
-        thin = select(porous, f4(0.03), select(driven, f4(0.38), like(rise, f4(0.26))))
+        puddle = _puddle(light.hollows, x, y, driven, footprint)
+        # Soil swallows it, and from what is not level it runs off.
+        puddle *= select(porous, zero, clip(f4(60.0) * (rise - f4(0.98))))
+        thin = select(porous, f4(0.02), select(driven, f4(0.38), like(rise, f4(0.26))))
         film = select(level, fallen * (thin + (f4(0.95) - thin) * puddle), zero)
         mirrored, share = _mirrored(lit, film, -rise * way[2], one - open_share, unblocked)
         # Water over it lets less light in and out.
@@ -75,7 +77,7 @@ def wetted(
 
 @kernel(inline=True)
 def _puddle(
-    hollows: NDArray[np.uint16], x: float, y: float, driven: bool, porous: bool, footprint: float
+    hollows: NDArray[np.uint16], x: float, y: float, driven: bool, footprint: float
 ) -> float:
     """Return the share of a level place that a puddle covers.
 
@@ -92,9 +94,9 @@ def _puddle(
     c, d = to_f4((four >> u4(16)) & byte), to_f4(four >> u4(24))
     first = a + across * (b - a)
     depth = f4(1.0 / 255.0) * (first + down * (c + across * (d - c) - first))
-    dry = select(porous, f4(0.72), select(driven, f4(0.615), like(x, f4(0.65))))
+    dry = select(driven, f4(0.63), like(x, f4(0.65)))
     # A large pixel shows a mean.
-    return clip((depth - dry) * (f4(26.0) / (f4(1.0) + f4(2.0) * footprint)))
+    return clip((depth - dry) * (f4(18.0) / (f4(1.0) + f4(2.0) * footprint)))
 
 
 @kernel(inline=True)

@@ -11,7 +11,7 @@ from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.engine.render.kernels.surface.texture import colour_of, texel
 from eyas.engine.state.mesh import Surface
 from eyas.lanes import kernel
-from eyas.lanes.vector import any_of, greater, magnitude, to_i4
+from eyas.lanes.vector import any_of, greater, magnitude, select, to_i4
 
 HILLSIDE, HEATH = i4(int(Surface.HILLSIDE)), i4(int(Surface.HEATH))
 DESERT, TRACK = i4(int(Surface.DESERT)), i4(int(Surface.DESERT_TRACK))
@@ -72,13 +72,14 @@ def wild(
     along: float,  # u, where that is a distance [m]
     point: Colour,  # The point [m]
     rise: float,  # Upward component of its normal
+    east: bool,  # Whether it faces east or west rather than north or south
     footprint: float,  # Size of a pixel on the surface [m]
 ) -> Colour:
     """Return the colours of points with what grows or lies on wild ground, linear."""
     result = colour
     if kinds & HILLY != 0:
         hilly = (surface == HILLSIDE) | ((surface > DRIFT) & (surface != HEATH_SHORE))
-        result = where(hilly, hillside(colour, point, rise, footprint), result)
+        result = where(hilly, hillside(colour, point, rise, east, footprint), result)
     if kinds & HEATHY != 0:
         heathy = (surface == HEATH) | (surface == HEATH_SHORE)
         result = where(heathy, heath(colour, point, footprint), result)
@@ -117,11 +118,13 @@ def _edged(
         ground = where(surface == TRACK, sand, earth)
         result = where(trodden, blended(colour, ground, share), result)
     if kinds & STREWN != 0:
-        ragged = along + f4(1.3) * wide + f4(1.5) * clump + f4(0.9) * fine
-        share = clip(f4(0.62) * (ragged - f4(0.5)))
-        light = f4(0.095) + f4(0.04) * fine
+        ragged = along + f4(0.9) * wide + f4(1.2) * clump + f4(0.8) * fine
+        share = clip(f4(0.9) * (ragged - f4(0.3)))
+        light = f4(0.150) + f4(0.05) * fine
         result = where(
-            surface == DRIFT, blended(result, (light, light, f4(0.96) * light), share), result
+            surface == DRIFT,
+            blended(result, (f4(1.03) * light, light, f4(0.94) * light), share),
+            result,
         )
     if kinds & VERGES != 0:
         ragged = along + f4(0.5) * clump + f4(0.9) * fine + f4(0.2) * wide
@@ -188,13 +191,13 @@ def desert(look: Look, colour: Colour, point: Colour, rise: float) -> Colour:
     light = one + (one - f4(0.75) * stony) * f4(1.15) * ridge + f4(0.2) * wide + f4(0.3) * grit
     red, green, blue = light * colour[0], light * colour[1], light * colour[2]
     pebble = f4(0.85) + f4(1.5) * grit + f4(0.3) * patch
-    gravel = (f4(0.27) * pebble, f4(0.205) * pebble, f4(0.138) * pebble)
-    red, green, blue = blended((red, green, blue), gravel, f4(0.66) * stony)
+    gravel = (f4(0.215) * pebble, f4(0.178) * pebble, f4(0.140) * pebble)
+    red, green, blue = blended((red, green, blue), gravel, f4(0.75) * stony)
     # Grass finds water at the edges of the stony flats.
     dry = level * clip(f4(4.2) * (f4(0.34) - magnitude(bare + f4(0.45))))
     tuft = f4(0.2) + f4(2.6) * grit + f4(1.0) * patch
     blades = f4(0.9) + f4(0.9) * grit
-    straw = (f4(0.190) * blades, f4(0.172) * blades, f4(0.075) * blades)
+    straw = (f4(0.140) * blades, f4(0.140) * blades, f4(0.066) * blades)
     return blended((red, green, blue), straw, f4(0.9) * dry * clip(tuft))
 
 
@@ -203,6 +206,7 @@ def hillside(
     colour: Colour,  # Of the grass
     point: Colour,  # The point [m]
     rise: float,  # Upward component of its normal
+    east: bool,  # Whether it faces east or west rather than north or south
     footprint: float,  # Size of a pixel on the surface [m]
 ) -> Colour:
     """Return the colour of a hillside, linear."""
@@ -219,12 +223,15 @@ def hillside(
     blue = colour[2] * bright * (one - f4(0.10) * dry)
     bare = clip((_ROCK - rise + f4(0.26) * tuft + f4(0.22) * wide) * f4(7.0))
     if any_of(bare > f4(0.0)):
-        layer = seen_swing(f4(0.3) * (x + y), f4(1.7) * z + f4(0.2) * x, one, footprint)
-        crack = seen_swing(x + y, f4(2.0) * z - y, f4(0.45), footprint)
-        stone = f4(0.825) + f4(0.55) * layer + f4(0.4) * crack
+        # Seen from the side that it faces, or the noise would be smeared.
+        along = select(east, y, x)
+        layer = seen_swing(f4(0.5) * along + z, f4(1.6) * z - f4(0.2) * along, f4(0.6), footprint)
+        crack = seen_swing(along - f4(0.5) * z, z + f4(0.4) * along, f4(0.3), footprint)
+        grain = seen_swing(along + f4(0.3) * z, z - f4(0.3) * along, f4(2.3), footprint)
+        stone = f4(0.9) + f4(0.7) * layer + f4(0.6) * crack + f4(0.6) * grain
         # Grass keeps to the ledges.
         bare = clip(bare * (f4(1.05) - f4(0.9) * crack))
-        rock = f4(0.150) * stone, f4(0.138) * stone, f4(0.118) * stone
+        rock = f4(0.178) * stone, f4(0.168) * stone, f4(0.152) * stone
         red, green, blue = blended((red, green, blue), rock, bare)
     return red, green, blue
 
@@ -248,8 +255,9 @@ def heath(
     scrub = f4(0.75) * cover * clip(lush + f4(6.0) * ragged - f4(0.96))
     # The grain of the soil shows through, and with it the size of what is seen.
     bright = (f4(0.8) + f4(0.5) * blade) * (f4(0.45) + colour[1] * _PER_SOIL)
-    grass = f4(0.215) * bright, f4(0.195) * bright, f4(0.088) * bright
-    shrub = f4(0.070) * bright, f4(0.088) * bright, f4(0.036) * bright
+    fresh = f4(0.055) * clip(lush + lush)
+    grass = (f4(0.185) - fresh) * bright, f4(0.172) * bright, (f4(0.082) - f4(0.3) * fresh) * bright
+    shrub = f4(0.056) * bright, f4(0.074) * bright, f4(0.030) * bright
     red, green, blue = blended(blended(colour, grass, cover), shrub, scrub)
     dust = f4(1.0) + f4(0.2) * wide
     return red * dust, green * dust, blue * dust
