@@ -96,6 +96,7 @@ ALBEDO: dict[str, tuple[float, float, float]] = {
     "asphalt_patch": (0.100, 0.099, 0.096),
     "paving": (0.275, 0.248, 0.222),
     "concrete": (0.300, 0.288, 0.264),
+    "stone": (0.335, 0.308, 0.262),
     "clinker": (0.165, 0.100, 0.078),
     "roof_tiles": (0.230, 0.118, 0.080),
     "roof_terrace": (0.190, 0.152, 0.126),

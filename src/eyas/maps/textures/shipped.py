@@ -16,7 +16,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.xz")
 
-SHA256 = "bc999fe8d50e2099135b2b0b9ac423995db10013385c01c3db67517c9aaef9d8"
+SHA256 = "864cf54df983aab362b2cc294604b84cb64f85b24e5cebe4d99437353152b7ac"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 

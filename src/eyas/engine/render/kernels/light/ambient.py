@@ -22,8 +22,9 @@ STOREY = 2.0  # Roofs and ground that differ by less are one [m]
 BOUNCED = 0.42
 """Share of the sky's light that arrives by way of walls and ground where the sky is hidden."""
 
-WEAR = 200.0
-"""Steps of the byte that tells how much lighter the ground is than its texture, in all of that."""
+WEAR, EVEN = 200.0, 128
+"""Of the byte that says how much lighter the ground is than its texture: steps in the whole of
+that, and the value of ground that is as its texture."""
 
 _ASIDE = f4(0.9)  # Distance in front of a wall at which its light is looked up [m]
 
@@ -205,7 +206,7 @@ def openness(
         share = select(inside, one - hidden * climb * climb, one)
     worn = like(x, zero)
     if level:
-        worn = f4(1.0 / WEAR) * (_blend(a, b, c, d, 24, across, down) - f4(128.0))
+        worn = f4(1.0 / WEAR) * (_blend(a, b, c, d, 24, across, down) - f4(EVEN))
         worn = select(inside, worn, zero)
     return share, worn
 
