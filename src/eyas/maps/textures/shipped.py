@@ -16,7 +16,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.xz")
 
-SHA256 = "864cf54df983aab362b2cc294604b84cb64f85b24e5cebe4d99437353152b7ac"
+SHA256 = "707b94b60f357750affe7efe2b6e6188071da1858c11425bab98dba02061ecce"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 
