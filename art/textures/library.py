@@ -98,7 +98,7 @@ ALBEDO: dict[str, tuple[float, float, float]] = {
     "concrete": (0.300, 0.288, 0.264),
     "stone": (0.335, 0.308, 0.262),
     "clinker": (0.165, 0.100, 0.078),
-    "roof_tiles": (0.230, 0.118, 0.080),
+    "roof_tiles": (0.205, 0.116, 0.083),
     "roof_terrace": (0.190, 0.152, 0.126),
     "roof_gravel": (0.215, 0.205, 0.182),
     "roof_membrane": (0.480, 0.470, 0.440),

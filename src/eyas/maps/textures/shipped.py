@@ -16,7 +16,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.xz")
 
-SHA256 = "707b94b60f357750affe7efe2b6e6188071da1858c11425bab98dba02061ecce"
+SHA256 = "43f5a38e42214d7da37b930a479e9e010f1cbf6fb984f62d946495d715ef2591"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 
