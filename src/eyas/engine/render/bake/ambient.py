@@ -113,6 +113,7 @@ def _wear(
     most = 22.0 if any(one.surface == Surface.DESERT for one in mesh.palette) else 40.0
     light = most * (1.0 - 0.55 * np.maximum(road, solid > 0)) * noise
     light += 14.0 * verge * (1.0 + 0.6 * noise) - 16.0 * (crowns > 0)
+    light[0, 0] = 0.0  # stands for all that lies beyond the map
     return np.round(np.clip(EVEN + light, 0.0, 255.0)).astype(np.uint32)
 
 

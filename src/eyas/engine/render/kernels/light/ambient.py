@@ -177,7 +177,7 @@ def openness(
     level: bool,  # Whether any of the points is ground or a roof; one answer for all lanes
 ) -> tuple[float, float]:
     """Return the share of the sky's light that reaches a point, 0 to 1, and by which share the
-    ground there is lighter than its texture.
+    ground there is lighter than its texture: as at the map's first texel beyond the map.
     """
     frame, shares = light.ambient_frame, light.ambient
     column = (x + _ASIDE * normal_x - frame.west) * frame.per_metre - f4(0.5)
@@ -207,7 +207,6 @@ def openness(
     worn = like(x, zero)
     if level:
         worn = f4(1.0 / WEAR) * (_blend(a, b, c, d, 24, across, down) - f4(EVEN))
-        worn = select(inside, worn, zero)
     return share, worn
 
 
