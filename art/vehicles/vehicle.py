@@ -23,8 +23,8 @@ _CHASSIS = 2.5, 1.26  # Width and height of a truck behind its cab [m]
 
 BODY_COLOURS: tuple[Colour, ...] = tuple(COLOURS[kind.colour] for kind in KINDS)
 """Body colours of cars, buses and trucks, sRGB, as often as among those that are parked: three in
-four white, black, grey or silver. The original has eight, of which half are yellow, ochre, green and
-sky blue. 32 are drawn from with the same random bits as eight."""
+four white, black, grey or silver. The original has eight, half of them yellow, ochre, green and sky
+blue. 32 take the same random bits as eight."""
 
 MOTORCYCLE_COLOURS: tuple[Colour, ...] = (
     (0.66, 0.10, 0.09),
