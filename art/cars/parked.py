@@ -84,7 +84,7 @@ def _car(
             (half - 0.6, cowl - 0.14), (half, cowl - 0.42),
         ),
         plan=(
-            (-half, 0.76), (0.12 - half, 0.93), (0.55 - half, 1.0), (half - 0.7, 1.0),
+            (-half, 0.84), (0.09 - half, 0.94), (0.55 - half, 1.0), (half - 0.7, 1.0),
             (half - 0.2, 0.89), (half, 0.58),
         ),
         windscreen=(x.front, x.cowl + 0.06),

@@ -40,7 +40,7 @@ _SOFT = 0.5
 """Share of a texel's width that a seam darkens: seams are 5 mm wide and texels 2 cm, so that from
 above a car has soft lines and no ink."""
 
-_FILM = 0.035  # Deviation of the brightness of paint, as a share
+_FILM = 0.06  # Deviation of the brightness of paint, as a share
 _DUST = 0.012  # Deviation of what dust adds to the brightness of panes
 
 _LONG = 4.6  # Length of the body that is painted [m]

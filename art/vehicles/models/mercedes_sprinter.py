@@ -16,7 +16,6 @@ _SHAPE = CarShape(
     lean=0.07,
     tail_window=True,
     tail_lamps=0.07,
-    tall_tail_lamps=True,
     head_lamps=0.42,
     sill=TRIM,
     bodywork="van",
