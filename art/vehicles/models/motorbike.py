@@ -8,7 +8,6 @@ from art.cars.finishes import (
     PAINT,
     PLATE,
     STEEL,
-    TAIL_LAMP,
     TRIM,
 )
 from art.vehicles.two_wheelers import SEAT, Posture, lamp, two_wheeler
