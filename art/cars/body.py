@@ -152,8 +152,9 @@ def _skin(
     tail, nose = shape.top[0][0], shape.top[-1][0]
     if low >= 5:
         return _roof(shape, x, edge=low == 5)
-    if low == 4 and rise > 0.1 and _glazed(shape, detail, x):
-        return GLASS
+    if low == 4 and rise > 0.1 and shape.windows[0][0] < x < shape.windows[-1][1]:
+        # Pillars between the doors are black, so that the windows are one dark band.
+        return GLASS if _glazed(shape, detail, x) else TRIM
     if strip == (3, 4) and x > nose - shape.head_lamps:
         return HEAD_LAMP
     if (strip == (3, 4) or (low == 4 and shape.tall_tail_lamps)) and x < tail + shape.tail_lamps:

@@ -84,8 +84,8 @@ def _car(
             (half - 0.6, cowl - 0.14), (half, cowl - 0.42),
         ),
         plan=(
-            (-half, 0.84), (0.09 - half, 0.94), (0.55 - half, 1.0), (half - 0.6, 1.0),
-            (half - 0.16, 0.91), (half, 0.68),
+            (-half, 0.84), (0.09 - half, 0.94), (0.55 - half, 1.0), (half - 0.7, 1.0),
+            (half - 0.2, 0.89), (half, 0.58),
         ),
         windscreen=(x.front, x.cowl + 0.06),
         rear_window=(0.001 - half,) * 2 if upright else (x.low, x.back),

@@ -5,7 +5,7 @@ plates, the third brake lamp, rails, walls of the arches.
 import numpy as np
 from numpy.typing import NDArray
 
-from art.cars.finishes import BRIGHT, GLASS, HIGH_BRAKE_LAMP, PAINT, PLATE, TRIM
+from art.cars.finishes import GLASS, HIGH_BRAKE_LAMP, PAINT, PLATE, STEEL, TRIM
 from art.cars.frame import Frame
 from art.cars.regions import COOLER, PLAIN, body_paint
 from art.cars.shape import CarShape, arch_radius, half_widths, height_at, sections
@@ -101,9 +101,9 @@ def _mirrors(shell: Shell, frame: Frame, shape: CarShape) -> None:
     half = frame.width / 2
     x = shape.windscreen[1] - 0.42
     z = height_at(shape.belt, x)
-    low, high = (x - 0.06, half - 0.24, z + 0.01), (x + 0.13, half, z + 0.19)
+    low, high = (x - 0.06, half - 0.2, z + 0.01), (x + 0.13, half + 0.035, z + 0.19)
     shell.box(low, high, PAINT, taper=0.015, both_sides=True)
-    y = half - 0.03, half - 0.21
+    y = half + 0.01, half - 0.17
     glass = [(x - 0.072, y[0], z + 0.035), (x - 0.072, y[1], z + 0.035),
              (x - 0.06, y[1], z + 0.17), (x - 0.06, y[0], z + 0.17)]  # fmt: skip
     shell.quads(glass, GLASS, both_sides=True)
@@ -126,13 +126,7 @@ def _rack(shell: Shell, frame: Frame, shape: CarShape) -> None:
     edge = sections(frame, shape, x, arches=True)[:, 6]
     lift = np.array([-0.02, 0.045, 0.045, 0.045, -0.02])
     path = edge + np.column_stack([0 * lift, 0 * lift + 0.015, lift])
-    shell.tube(path, (0.022,) * 5, BRIGHT, sides=4, both_sides=True)
-    most = max(z for _, z in shape.top) + 0.027
-    for share in (0.3, 0.72):  # bars across
-        bar = start + share * (end - start)
-        y = float(np.interp(bar, path[:, 0], path[:, 1]))
-        z = height_at(shape.top, bar) + 0.008
-        shell.box((bar - 0.035, -y, z), (bar + 0.035, y, min(z + 0.03, most)), BRIGHT)
+    shell.tube(path, (0.022,) * 5, STEEL, sides=4, both_sides=True)
 
 
 def _arches(shell: Shell, frame: Frame, shape: CarShape) -> None:

@@ -34,10 +34,14 @@ from eyas.engine.render.textures.fields import SIZE, fractal, source
 
 Texture = NDArray[np.uint8]
 
-_SEAM = 0.015
+_SEAM = 0.02
 _BLACK = 0.03
-_FILM = 0.08  # Deviation of the brightness of paint, as a share
-_DUST = 0.12  # Deviation of what dust adds to the brightness of panes
+_SOFT = 0.5
+"""Share of a texel's width that a seam darkens: seams are 5 mm wide and texels 2 cm, so that from
+above a car has soft lines and no ink."""
+
+_FILM = 0.06  # Deviation of the brightness of paint, as a share
+_DUST = 0.012  # Deviation of what dust adds to the brightness of panes
 
 _LONG = 4.6  # Length of the body that is painted [m]
 
@@ -49,8 +53,10 @@ def bodywork(style: str) -> Texture:
     side, top = sheet_of(tones, SIDE, (_LONG, 0.75)), sheet_of(tones, TOP, (_LONG, 0.8))
     _SIDES[kind](side)
     _TOPS[kind](top)
+    gloss = np.zeros_like(tones)
     if look == "sunroof":
-        _sunroof(top)
+        _sunroof(top, 0.02)
+        _sunroof(sheet_of(gloss, TOP, (_LONG, 0.8)), 1.0)
     _band(sheet_of(tones, BAND, (2.6, 0.42)))
     _rear(sheet_of(tones, REAR, (0.85, 0.75)), kind)
     _front(sheet_of(tones, FRONT, (0.85, 0.75)), kind, look)
@@ -61,7 +67,9 @@ def bodywork(style: str) -> Texture:
     if look == "worn":
         _wear(side, top)
         tones *= 1.0 - 0.06 * np.clip(fractal(rng, 1.3, longest=40.0) - 0.4, 0.0, 1.0)
-    return texture_of(tones * np.maximum(1.0 + _FILM * film, 0.2))
+    picture = texture_of(tones * np.maximum(1.0 + _FILM * film, 0.2))
+    picture[..., 3] = np.maximum(picture[..., 3], np.round(255.0 * gloss[::-1]))
+    return picture
 
 
 def _wear(side: Sheet, top: Sheet) -> None:
@@ -81,11 +89,10 @@ def _dirt(sheet: Sheet, height: float, strength: float) -> None:
 
 def _doors(sheet: Sheet, seams: Sequence[Line], handles: Sequence[float]) -> None:
     for seam in seams:
-        sheet.line([(x + 0.03, y) for x, y in seam], 0.03, 1.0, 0.5)  # the edge behind it is lit
-        sheet.line(seam, 0.034, _SEAM)
+        sheet.line(seam, 0.02, _SEAM, _SOFT)
     for x in handles:
-        sheet.box((x, 0.585), (x + 0.2, 0.645), _SEAM, 0.75)
-        sheet.line([(x + 0.02, 0.63), (x + 0.18, 0.63)], 0.028, 1.0)
+        sheet.box((x, 0.585), (x + 0.2, 0.645), _SEAM, _SOFT)
+        sheet.line([(x + 0.02, 0.63), (x + 0.18, 0.63)], 0.028, 1.0, 0.7)
 
 
 def _car_side(sheet: Sheet) -> None:
@@ -108,9 +115,9 @@ def _car_side(sheet: Sheet) -> None:
         (pillar + 0.06, arch + 0.38),
     )
     # Joints of the bumpers, from the arches to the lamps; the flap of the tank.
-    sheet.line([(arch - 0.02, 0.42), (tail, 0.47)], 0.034, _SEAM)
-    sheet.line([(arch_end + 0.02, 0.42), (nose, 0.47)], 0.034, _SEAM)
-    sheet.box((arch + 0.02, 0.55), (arch + 0.19, 0.7), _SEAM, 0.8)
+    sheet.line([(arch - 0.02, 0.42), (tail, 0.47)], 0.02, _SEAM, _SOFT)
+    sheet.line([(arch_end + 0.02, 0.42), (nose, 0.47)], 0.02, _SEAM, _SOFT)
+    sheet.box((arch + 0.02, 0.55), (arch + 0.19, 0.7), _SEAM, _SOFT)
     sheet.box((arch + 0.045, 0.575), (arch + 0.165, 0.675), BASE)
 
 
@@ -130,9 +137,9 @@ def _van_side(sheet: Sheet) -> None:
         ],
         (pillar + 0.06, front + 0.2),
     )
-    sheet.line([(0.0, 0.69), (pillar, 0.69)], 0.03, _SEAM)  # the rail of the sliding door
-    sheet.line([(arch_end + 0.02, 0.42), (nose, 0.47)], 0.034, _SEAM)
-    sheet.line([(arch - 0.02, 0.3), (0.0, 0.3)], 0.034, _SEAM)
+    sheet.line([(0.0, 0.69), (pillar, 0.69)], 0.03, _SEAM, 0.8)  # the rail of the sliding door
+    sheet.line([(arch_end + 0.02, 0.42), (nose, 0.47)], 0.02, _SEAM, _SOFT)
+    sheet.line([(arch - 0.02, 0.3), (0.0, 0.3)], 0.02, _SEAM, _SOFT)
 
 
 def _bus_side(sheet: Sheet) -> None:
@@ -148,44 +155,35 @@ def _bus_side(sheet: Sheet) -> None:
 
 def _bonnet(sheet: Sheet) -> None:
     _, _, _, _, screen, nose = (_LONG * s for s in TOP_SHARES)
-    sheet.box((screen - 0.02, -0.1), (screen + 0.12, 0.71), _BLACK)  # the well of the wipers
-    sheet.line([(screen + 0.09, 0.0), (screen + 0.03, 0.6)], 0.03, 0.2 * BASE)
-    end = nose - 0.22
-    sheet.line(
-        [(screen + 0.06, 0.715), (end - 0.1, 0.66), (end, 0.56), (end, -0.1)], 0.1, 1.0, 0.45
-    )
-    sheet.line([(screen, 0.74), (end - 0.1, 0.69), (end, 0.58), (end, -0.1)], 0.036, _SEAM)
-    sheet.line([(screen + 0.12, 0.42), (end - 0.06, 0.26)], 0.045, 1.0, 0.9)  # creases
-    sheet.line([(screen + 0.12, 0.48), (end - 0.06, 0.32)], 0.06, 0.5 * BASE, 0.8)
-    sheet.box((nose - 0.16, -0.1), (nose + 0.1, 0.56), _BLACK)  # the upper end of the grille
-    sheet.line([(nose - 0.18, -0.1), (nose - 0.18, 0.58)], 0.03, 1.0)
-    for x in (nose - 0.12, nose - 0.05):
-        sheet.line([(x, -0.1), (x, 0.52)], 0.03, 0.6)
-    sheet.box((nose - 0.09, -0.1), (nose - 0.01, 0.06), 1.0)  # the badge
+    sheet.box((screen - 0.02, -0.1), (screen + 0.05, 0.71), _BLACK, 0.8)  # the well of the wipers
+    end = nose - 0.14
+    edge = [(screen + 0.05, 0.72), (end - 0.14, 0.67), (end, 0.54), (end, -0.1)]
+    sheet.line([(x - 0.02, y - 0.03) for x, y in edge], 0.05, 1.0, 0.3)
+    sheet.line(edge, 0.02, _SEAM, _SOFT)
+    sheet.line([(screen + 0.12, 0.42), (end - 0.06, 0.26)], 0.06, 1.0, 0.4)  # creases
+    sheet.line([(screen + 0.12, 0.48), (end - 0.06, 0.32)], 0.06, 0.6 * BASE, 0.4)
+    sheet.box((nose - 0.07, -0.1), (nose + 0.1, 0.5), _BLACK, 0.8)  # the upper end of the grille
 
 
 def _roof(sheet: Sheet, back: float, front: float) -> None:
     """Draw the ditches along the edges of a roof, and the rims of the windows ahead and behind."""
-    sheet.line([(back, 0.745), (front, 0.745)], 0.035, _SEAM)
-    sheet.line([(back, 0.7), (front, 0.7)], 0.03, 1.0, 0.5)
-    sheet.line([(back + 0.03, -0.1), (back + 0.03, 0.72)], 0.05, 1.0, 0.5)
-    sheet.line([(front - 0.03, -0.1), (front - 0.03, 0.72)], 0.05, 1.0, 0.5)
-    sheet.line([(front, -0.1), (front, 0.8)], 0.04, _SEAM)
-    sheet.line([(back, -0.1), (back, 0.8)], 0.04, _SEAM)
-    for y in (0.24, 0.5):  # swages along the roof
-        sheet.line([(back + 0.14, y), (front - 0.14, y)], 0.05, 0.6 * BASE, 0.8)
-        sheet.line([(back + 0.14, y + 0.045), (front - 0.14, y + 0.045)], 0.035, 1.0, 0.9)
+    sheet.line([(back, 0.74), (front, 0.74)], 0.03, _SEAM, _SOFT)
+    sheet.line([(back, 0.69), (front, 0.69)], 0.04, 1.0, 0.3)
+    for x in (back, front):
+        sheet.line([(x, -0.1), (x, 0.8)], 0.03, _SEAM, 0.7)
+    # A roof is a little lower at its edges and ends, and so a little darker there.
+    sheet.line([(back + 0.1, 0.4), (back + 0.1, -0.1)], 0.14, 0.85 * BASE, 0.5)
 
 
 def _saloon_top(sheet: Sheet) -> None:
     tail, low, back, front, _, _ = (_LONG * s for s in TOP_SHARES)
     _bonnet(sheet)
     _roof(sheet, back, front)
-    sheet.box((back + 0.18, -0.1), (back + 0.32, 0.035), _BLACK)  # the aerial
+    sheet.box((back + 0.18, -0.1), (back + 0.3, 0.03), _BLACK)  # the aerial
     # Seams of the boot's lid.
-    sheet.line([(low - 0.02, -0.1), (low - 0.02, 0.68)], 0.05, _SEAM)
-    sheet.line([(low, 0.7), (tail, 0.64)], 0.036, _SEAM)
-    sheet.line([(tail + 0.02, -0.1), (tail + 0.02, 0.8)], 0.05, 1.0, 0.8)
+    sheet.line([(low - 0.03, -0.1), (low - 0.03, 0.68)], 0.03, _SEAM, 0.7)
+    sheet.line([(low, 0.7), (tail, 0.64)], 0.02, _SEAM, _SOFT)
+    sheet.line([(tail + 0.02, -0.1), (tail + 0.02, 0.8)], 0.05, 1.0, 0.4)
 
 
 def _hatch_top(sheet: Sheet) -> None:
@@ -193,15 +191,14 @@ def _hatch_top(sheet: Sheet) -> None:
     _bonnet(sheet)
     _roof(sheet, back, front)
     # The gap of the tailgate behind the roof, the aerial.
-    sheet.line([(back + 0.16, -0.1), (back + 0.16, 0.68)], 0.036, _SEAM)
-    sheet.box((back + 0.2, -0.1), (back + 0.32, 0.035), _BLACK)
-    sheet.line([(low, -0.1), (low, 0.8)], 0.05, _SEAM)
+    sheet.line([(back + 0.16, -0.1), (back + 0.16, 0.68)], 0.02, _SEAM, _SOFT)
+    sheet.box((back + 0.2, -0.1), (back + 0.3, 0.03), _BLACK)
+    sheet.line([(low, -0.1), (low, 0.8)], 0.03, _SEAM, 0.7)
 
 
-def _sunroof(sheet: Sheet) -> None:
+def _sunroof(sheet: Sheet, tone: float) -> None:
     front = _LONG * TOP_SHARES[3]
-    sheet.box((front - 0.5, -0.1), (front - 0.14, 0.44), _SEAM)
-    sheet.box((front - 0.47, -0.1), (front - 0.17, 0.4), 0.05)
+    sheet.box((front - 0.5, -0.1), (front - 0.14, 0.42), tone)
 
 
 def _van_top(sheet: Sheet) -> None:
@@ -209,29 +206,23 @@ def _van_top(sheet: Sheet) -> None:
     _bonnet(sheet)
     _roof(sheet, back, front)
     for x in np.linspace(back + 0.15, front - 0.15, 7):  # ribs
-        sheet.line([(float(x), -0.1), (float(x), 0.62)], 0.03, 1.0, 0.7)
-        sheet.line([(float(x) + 0.03, -0.1), (float(x) + 0.03, 0.62)], 0.025, 0.5 * BASE, 0.7)
+        sheet.line([(float(x), -0.1), (float(x), 0.62)], 0.03, 1.0, 0.3)
+        sheet.line([(float(x) + 0.04, -0.1), (float(x) + 0.04, 0.62)], 0.03, 0.6 * BASE, 0.3)
 
 
 def _bus_top(sheet: Sheet) -> None:
-    sheet.line([(0.0, 0.72), (_LONG, 0.72)], 0.03, _SEAM, 0.8)
-    sheet.line([(0.0, 0.66), (_LONG, 0.66)], 0.03, 1.0, 0.7)
-    for y in (0.16, 0.46):  # swages along the roof
-        sheet.line([(0.0, y), (_LONG, y)], 0.05, 0.6 * BASE, 0.8)
-        sheet.line([(0.0, y + 0.05), (_LONG, y + 0.05)], 0.04, 1.0, 0.8)
+    sheet.line([(0.0, 0.72), (_LONG, 0.72)], 0.03, _SEAM, _SOFT)
+    sheet.line([(0.0, 0.66), (_LONG, 0.66)], 0.03, 1.0, 0.4)
     for x in np.linspace(0.05, 0.95, 9) * _LONG:
-        sheet.line([(float(x), -0.1), (float(x), 0.7)], 0.025, _SEAM, 0.8)
+        sheet.line([(float(x), -0.1), (float(x), 0.7)], 0.025, _SEAM, 0.4)
     for x in (0.42, 0.56, 0.9):  # hatches
-        sheet.box((x * _LONG - 0.14, -0.2), (x * _LONG + 0.14, 0.26), _SEAM)
+        sheet.box((x * _LONG - 0.14, -0.2), (x * _LONG + 0.14, 0.26), 0.45 * BASE)
         sheet.box((x * _LONG - 0.115, -0.2), (x * _LONG + 0.115, 0.23), 1.0)
-        sheet.box((x * _LONG - 0.085, -0.2), (x * _LONG + 0.085, 0.17), 0.35 * BASE)
 
 
 def _band(sheet: Sheet) -> None:
-    """Draw the side windows as they look from afar: dark, with pillars in the body's colour."""
-    first, pillar, last = (2.6 * share for share in BEAMS)
-    sheet.box((first, 0.03), (pillar - 0.05, 0.37), 0.03)
-    sheet.box((pillar + 0.05, 0.03), (last, 0.37), 0.03)
+    """Draw the side windows as they look from afar: one dark band."""
+    sheet.box((2.6 * BEAMS[0], -0.1), (2.6 * BEAMS[-1], 0.4), 0.03)
 
 
 def _rear(sheet: Sheet, kind: str) -> None:
@@ -284,30 +275,26 @@ _GLASS = 0.05  # Brightness of what is seen through a pane, as a share of the ti
 
 
 def panes() -> Texture:
-    """Return the panes of a car, with their frames and what is seen behind them."""
+    """Return the panes of a car, with their frames and what is seen behind them, which is dim: by
+    day a pane mirrors more light than comes out through it.
+    """
     tones = np.full((SIZE, SIZE), _GLASS)
     screen = sheet_of(tones, WINDSCREEN, (1.3, 0.75))
-    screen.box((-0.1, -0.1), (1.4, 0.24), 0.24)  # dashboard
-    screen.line([(0.1, 0.22), (1.2, 0.22)], 0.05, 0.02)
+    screen.box((-0.1, -0.1), (1.4, 0.2), 0.16)  # dashboard
     for x in (0.37, 0.93):
-        screen.box((x - 0.2, 0.27), (x + 0.2, 0.56), 0.34, round_=0.08)  # seats
-        screen.box((x - 0.05, 0.27), (x + 0.05, 0.5), 0.26, round_=0.03)
-        screen.box((x - 0.11, 0.58), (x + 0.11, 0.68), 0.38, round_=0.05)
-    screen.line([(0.8, 0.24), (0.84, 0.33), (1.02, 0.33), (1.06, 0.24), (0.93, 0.19), (0.8, 0.24)],
-                0.035, 0.0)  # fmt: skip
-    screen.box((0.59, 0.6), (0.71, 0.66), 0.0)  # mirror
+        screen.box((x - 0.2, 0.27), (x + 0.2, 0.56), 0.11, round_=0.08)  # seats
+        screen.box((x - 0.11, 0.58), (x + 0.11, 0.68), 0.13, round_=0.05)
+    screen.line([(0.8, 0.2), (0.84, 0.3), (1.02, 0.3), (1.06, 0.2)], 0.035, 0.01)  # wheel
+    screen.box((0.59, 0.62), (0.71, 0.68), 0.01)  # mirror
     for x in (0.25, 0.75):  # wipers
-        screen.line([(x, 0.03), (x + 0.45, 0.1)], 0.025, 0.0)
+        screen.line([(x, 0.03), (x + 0.45, 0.08)], 0.02, 0.0)
     rear = sheet_of(tones, REAR_WINDOW, (1.2, 0.6))
     rear.box((-0.1, -0.1), (1.3, 0.16), 0.08)  # shelf
     for x in (0.3, 0.6, 0.9):
-        rear.box((x - 0.11, 0.2), (x + 0.11, 0.36), 0.13, round_=0.05)
-    rear.box((-0.1, 0.14), (1.3, 0.22), 0.11)
-    for y in (0.26, 0.32, 0.38, 0.44):
-        rear.line([(0.1, y), (1.1, y)], 0.012, 0.12, 0.6)  # heating wires
+        rear.box((x - 0.11, 0.2), (x + 0.11, 0.36), 0.09, round_=0.05)
     side = sheet_of(tones, SIDE_PANE, (0.95, 0.4))
-    side.box((0.28, -0.1), (0.56, 0.2), 0.42, round_=0.08)
-    side.box((0.34, 0.2), (0.5, 0.31), 0.48, round_=0.05)
+    side.box((0.28, -0.1), (0.56, 0.2), 0.13, round_=0.08)
+    side.box((0.34, 0.2), (0.5, 0.31), 0.15, round_=0.05)
     for sheet, size, width in (
         (screen, (1.3, 0.75), 0.05), (rear, (1.2, 0.6), 0.05), (side, (0.95, 0.4), 0.035),
     ):  # fmt: skip

@@ -19,7 +19,7 @@ from art.cars.finishes import (
     TRIM,
 )
 from art.cars.frame import Axle
-from art.cars.regions import CAB_SIDE, PLAIN, SIDE_PANE, WINDSCREEN, body_paint
+from art.cars.regions import CAB_SIDE, PLAIN, REAR_WINDOW, SIDE_PANE, WINDSCREEN, body_paint
 from art.parts import levels_of
 from art.vehicles.vehicle import CAB, CHASSIS_BEHIND, Trailer, VehicleModel, vehicle
 from eyas.engine.mesh.panels import fan
@@ -141,6 +141,8 @@ def _cab(shell: Shell, front: float, detail: int) -> None:
     if detail == 0:
         return
     shell.quads(facing(front + 0.012, (-0.8, 0.8), (1.16, 1.86)), TRIM)
+    behind = facing(back - 0.012, (-0.8, 0.8), (2.1, 2.85))[::-1]
+    shell.quads(behind, PANE, uvs=REAR_WINDOW.at([0.0, 1.0, 1.0, 0.0], [1.0, 1.0, 0.0, 0.0]))
     shell.quads(facing(front + 0.012, (-0.27, 0.27), (0.46, 0.58)), PLATE)
     shell.box((front - 0.5, HALF - 0.05, 2.1), (front - 0.34, 1.4, 2.75), TRIM, both_sides=True)
     if detail == 2:
@@ -166,7 +168,8 @@ def _chassis(shell: Shell, model: VehicleModel, detail: int) -> None:
         return
     shell.box((end, 0.3, 0.86), (front - 0.4, 0.52, 1.1), STEEL, both_sides=True)
     shell.box((rear + 0.75, 0.62, 0.45), (front - 1.4, 1.18, 1.0), STEEL, both_sides=True)
-    shell.box((rear - 0.62, 0.68, 1.05), (rear + 0.62, 1.24, 1.14), TRIM, both_sides=True)
+    # Mudguards ahead of the wheels only: tyres say what it is, from behind and above too.
+    shell.box((rear + 0.4, 0.68, 0.9), (rear + 0.66, 1.24, 1.08), TRIM, both_sides=True)
     shell.box((rear - 0.45, -0.55, 1.1), (rear + 0.45, 0.55, 1.25), TRIM)
     for x in (end, rear + 0.8, front - 1.6):
         shell.box((x, -0.3, 0.88), (x + 0.16, 0.3, 1.06), STEEL)

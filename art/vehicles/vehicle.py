@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from art.cars.frame import Axle
+from art.cars.parked import COLOURS, KINDS
 from art.model import DrawnModel
 from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Mesh
@@ -20,18 +21,10 @@ _EXHAUST = 0.25  # How far the exhaust is behind the cab [m]
 
 _CHASSIS = 2.5, 1.26  # Width and height of a truck behind its cab [m]
 
-BODY_COLOURS: tuple[Colour, ...] = (
-    (0.43, 0.11, 0.10),
-    (0.85, 0.85, 0.05),
-    (0.10, 0.15, 0.18),
-    (0.14, 0.29, 0.16),
-    (0.18, 0.28, 0.64),
-    (0.62, 0.62, 0.62),
-    (0.72, 0.52, 0.18),
-    (0.18, 0.50, 0.72),
-)
-"""The original's body colours of cars, buses and trucks, sRGB: dark red, yellow, blue-black, dark
-green, blue, grey, ochre, sky blue."""
+BODY_COLOURS: tuple[Colour, ...] = tuple(COLOURS[kind.colour] for kind in KINDS)
+"""Body colours of cars, buses and trucks, sRGB, as often as among those that are parked: three in
+four white, black, grey or silver. The original has eight, half of them yellow, ochre, green and sky
+blue. 32 take the same random bits as eight."""
 
 MOTORCYCLE_COLOURS: tuple[Colour, ...] = (
     (0.66, 0.10, 0.09),

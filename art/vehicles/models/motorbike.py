@@ -8,7 +8,6 @@ from art.cars.finishes import (
     PAINT,
     PLATE,
     STEEL,
-    TAIL_LAMP,
     TRIM,
 )
 from art.vehicles.two_wheelers import SEAT, Posture, lamp, two_wheeler
@@ -55,8 +54,7 @@ def _motorbike(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
         [(front, 0.1, radius), (0.56, 0.08, 0.95)], (0.035, 0.04), BRIGHT, sides=5, both_sides=True
     )
     shell.box((rear, 0.09, radius - 0.05), (-0.05, 0.14, radius + 0.12), STEEL, both_sides=True)
-    shell.box((-0.86, 0.2, 0.48), (-0.4, 0.4, 0.8), BRIGHT, taper=0.02, both_sides=True)
-    shell.box((-0.88, 0.24, 0.62), (-0.86, 0.36, 0.72), TAIL_LAMP, both_sides=True)
+    shell.box((-0.86, 0.2, 0.5), (-0.42, 0.36, 0.78), TRIM, taper=0.02, both_sides=True)
     for indicator, y in ((INDICATOR_LEFT, 0.15), (INDICATOR_RIGHT, -0.25)):
         shell.box((-1.12, y, 0.78), (-1.06, y + 0.1, 0.84), indicator)
     shell.box((-1.24, -0.1, 0.55), (-1.2, 0.1, 0.75), PLATE)

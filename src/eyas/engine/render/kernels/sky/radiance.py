@@ -265,18 +265,20 @@ def reflection(
     # In a street, upright surfaces mirror low things, not the pale horizon.
     lower = z - f4(0.12)
     red, green, blue, _ = _air(lit, lower, _dot(x, y, lower, lit.sun))
+    # Clouds and haze make it paler than the clear zenith.
+    red, green, blue = blended((red, green, blue), lit.horizon, f4(0.4))
     below = lesser(greater(f4(-6.0) * lower, zero), one)
     below *= below * (f4(3.0) - f4(2.0) * below)
-    below *= f4(0.6) * (one - lesser(lit.fog_density * f4(400.0), one))
+    below *= f4(0.9) * (one - lesser(lit.fog_density * f4(400.0), one))
     red, green, blue = blended((red, green, blue), lit.below, below)
     # Around a point that gets half of the sky's light, things are some 45 degrees high.
     around = lesser(greater((f4(1.5) * hidden - z) * f4(5.0), zero), one)
     around *= f4(0.8) * (one - below)
     red, green, blue = blended((red, green, blue), surroundings(lit), around)
     shine = _dot(x, y, z, lit.sun)
-    for _ in range(6):
+    for _ in range(7):
         shine *= shine
-    shine *= f4(6.0) * sunlit
+    shine *= f4(32.0) * sunlit
     return (red + shine * sun.x, green + shine * sun.y, blue + shine * sun.z), share
 
 

@@ -155,7 +155,7 @@ def _smoothness(surface: int, alpha: float) -> float:
     """Return the share of light that a surface mirrors at normal incidence."""
     zero = f4(0.0)
     painted = select(surface == PAINT, f4(0.05) * alpha, zero)  # cloth has none
-    glassy = select(surface == GLASS, like(alpha, f4(0.08)), zero)
+    glassy = select(surface == GLASS, like(alpha, f4(0.09)), zero)
     wet = select(surface == WATER, like(alpha, f4(0.04)), zero)
     return painted + glassy + wet + select(surface == FACADE, f4(0.16) * (f4(1.0) - alpha), zero)
 
