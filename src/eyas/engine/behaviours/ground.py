@@ -1,7 +1,6 @@
 """A map as those see it who walk on it: what is in their way, and where they walk."""
 
 from collections.abc import Sequence
-from functools import cached_property
 from itertools import pairwise
 from typing import Final, NamedTuple
 
@@ -278,16 +277,13 @@ class WalkingGround:
 
     def __init__(self, scene: Scene, *, roads: bool, lights: SignalPlan | None = None) -> None:
         self.scene, self.lights = scene, lights
-        self.obstacles = GroundObstacles(scene, roads=roads)
-        self._roads = roads
+        self.solids = GroundObstacles(scene, roads=False)  # The obstacles without the roads
+        self.obstacles = self.solids
+        if roads:
+            self.obstacles = GroundObstacles(scene, roads=True, others=self.solids)
         # Pavement walkers are beside the roads by the choice of their ways.
         self.surface = WalkedSurface(scene)
         self.roadside = Roadside(scene.network, self.obstacles)
-
-    @cached_property
-    def solids(self) -> GroundObstacles:
-        """The obstacles without the roads."""
-        return GroundObstacles(self.scene, roads=False) if self._roads else self.obstacles
 
 
 def walkways(
