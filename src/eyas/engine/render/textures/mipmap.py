@@ -55,8 +55,8 @@ def _packed(image: NDArray[np.uint8]) -> NDArray[np.uint32]:
     top, left = 0, 0
     for number in range(LEVELS):
         if number > 0:
-            texels = (texels[::2] + texels[1::2]) / 2
-            texels = (texels[:, ::2] + texels[:, 1::2]) / 2
+            texels = texels[::2] + texels[1::2]
+            texels = (texels[:, ::2] + texels[:, 1::2]) * 0.25
             alpha = np.round(texels[..., 3] * 255.0).astype(np.uint8)
             level = np.dstack([_kept(texels[..., :3]), alpha])
         packed = level.view("<u4")[..., 0]
