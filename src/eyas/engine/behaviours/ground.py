@@ -1,6 +1,7 @@
 """A map as those see it who walk on it: what is in their way, and where they walk."""
 
 from collections.abc import Sequence
+from functools import cached_property
 from itertools import pairwise
 from typing import Final, NamedTuple
 
@@ -17,6 +18,7 @@ from eyas.engine.behaviours.pavements import (
     Walkway,
     along,
     bridged,
+    closed_blocks,
     is_hard,
     paved_parts,
     pavement_ways,
@@ -285,6 +287,11 @@ class WalkingGround:
         self.surface = WalkedSurface(scene)
         self.roadside = Roadside(scene.network, self.obstacles)
 
+    @cached_property
+    def blocks(self) -> list[shapely.Polygon]:
+        """The blocks with roads all round."""
+        return closed_blocks(self.scene.network, self.scene.size)
+
 
 def walkways(
     ground: WalkingGround,  # The map
@@ -304,10 +311,8 @@ def walkways(
         obstacles = ground.solids
         found = kerb_ways(scene.footways, obstacles, ground.surface, radius, vehicles)
     else:
-        obstacles, extent = ground.obstacles, scene.size
-        found = pavement_ways(
-            scene.network, extent, obstacles, ground.surface, radius, verges=verges, lanes=lanes
-        )
+        obstacles, blocks = ground.obstacles, ground.blocks
+        found = pavement_ways(blocks, obstacles, ground.surface, radius, verges=verges, lanes=lanes)
     once = [outline(chain_through(way.corners, bend, 1)) for way in found]
     # A rounded corner may come too near to what the way leads round.
     lines = np.array([shapely.LineString(points) for points in once], object)
