@@ -84,7 +84,7 @@ def _points(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     corners = mesh.positions[mesh.triangles].astype(np.float64)
     points = exact.product(np.moveaxis(corners, 2, 0), share.T)
     across = exact.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.linalg.norm(across, axis=1)
+    area = exact.lengths(across)
     return points.reshape(3, -1), np.repeat(area, len(share))
 
 

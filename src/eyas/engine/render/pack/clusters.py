@@ -62,7 +62,7 @@ def cluster_order(
     solid = np.flatnonzero(~leafy)
     points = corners[solid].astype(np.float64)
     normals = exact.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals /= exact.lengths(normals)[:, None]
     least, most = ends_of(points)
     first = np.flatnonzero(np.diff(mesh[solid], prepend=-1))
     small = np.where(np.isfinite(sizes[solid]), exact.log2(np.maximum(sizes[solid], 1e-3)), 8.0)
@@ -163,11 +163,11 @@ def _cones(corners: NDArray[np.float64], clusters: NDArray[np.float32]) -> NDArr
     the cone opens away from them, by a right angle less that angle (Z. Hajdu, meshoptimizer, 2017).
     """
     normals = exact.cross(corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0])
-    length = np.linalg.norm(normals, axis=2, keepdims=True)
+    length = exact.lengths(normals)[:, :, None]
     real = (clusters[:, SIZE] >= 0.0) & (length[:, :, 0] > 0.0)
     normals = np.where(real[:, :, None], normals / np.where(length > 0.0, length, 1.0), 0.0)
     axis = normals.sum(axis=1)
-    axis /= np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), 1e-9)
+    axis /= np.maximum(exact.lengths(axis), 1e-9)[:, None]
     cosine = np.where(real, exact.dot(normals, axis[:, None]), 1.0)
     middle = corners.reshape(len(corners), 3 * CLUSTER, 3).mean(axis=1)
     height = exact.dot(middle[:, None] - corners[:, :, 0], normals)
