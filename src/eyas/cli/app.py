@@ -137,10 +137,14 @@ class _Line(logging.Formatter):
 class _Lines(logging.StreamHandler[TextIO]):
     """Writes records as lines; on a terminal the next one takes the place of one that passes."""
 
+    _stage: object = None  # That was written last
+
     def emit(self, record: logging.LogRecord) -> None:
-        """Write a record; where lines stay, none that is empty."""
-        if record.msg or self.stream.isatty():
-            self.terminator = "\r" if hasattr(record, "passing") and self.stream.isatty() else "\n"
+        """Write a record; where lines stay, none that is empty, and each stage once."""
+        terminal, stage = self.stream.isatty(), getattr(record, "passing", None)
+        if terminal or (record.msg and (stage is None or stage != self._stage)):
+            self.terminator = "\r" if terminal and stage is not None else "\n"
+            self._stage = stage or self._stage
             super().emit(record)
 
     def format(self, record: logging.LogRecord) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from eyas.engine.core.errors import ConfigError
 from eyas.engine.envs.choice import EnvChoices, Source, chosen_settings
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ def make(name: str = "citystreet-day", **choices: Any) -> "gymnasium.Env[Any, An
     from eyas.engine.envs.notebook import show_wrapped
 
     show_wrapped()
-    return gymnasium.make(f"eyas/{name}-v0", **choices)
+    return gymnasium.make(_identifier(name), **choices)
 
 
 def make_vec(
@@ -51,7 +52,17 @@ def make_vec(
     """
     import gymnasium
 
-    return gymnasium.make_vec(f"eyas/{name}-v0", num_envs=num_envs, **choices)
+    return gymnasium.make_vec(_identifier(name), num_envs=num_envs, **choices)
+
+
+def _identifier(name: object) -> str:
+    """Return Gymnasium's name of an environment."""
+    if not isinstance(name, str):
+        raise ConfigError(
+            f"name: a {type(name).__name__} is not allowed; allowed: a map and a weather, such as "
+            "'village-night'; other settings are the argument `config`"
+        )
+    return f"eyas/{name}-v0"
 
 
 def make_config(source: Source = None, **choices: Unpack[EnvChoices]) -> "EyasConfig":

@@ -55,12 +55,16 @@ class TextIndex:
 
     def of(self, text: bytes) -> Any:  # noqa: ANN401  # JSON
         """Return what is read from a text; what `read` raises passes through."""
+        return json.loads(self.json_of(text))
+
+    def json_of(self, text: bytes) -> bytes:
+        """Return the same as JSON, which is the same wherever it comes from."""
         digest = digest_of(text)
         for known in (self._new, self._brought, self._kept):
             if digest in known:
-                return json.loads(bytes(known[digest]))
+                return bytes(known[digest])
         self._new[digest] = told = self._json_of(text)
-        return json.loads(told)
+        return told
 
     def keep(self) -> None:
         """Keep what was read since the last time, beside what other processes have kept."""

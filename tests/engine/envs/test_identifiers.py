@@ -6,7 +6,8 @@ import gymnasium
 import numpy as np
 import pytest
 
-import eyas  # noqa: F401  # makes the environments known
+import eyas
+from eyas.engine.core.errors import ConfigError
 from eyas.engine.world.maps import MAPS
 
 
@@ -42,3 +43,9 @@ def test_every_registered_environment_is_a_map_in_a_weather():
     known = {f"eyas/{m}-{weather}-v0" for m in MAPS.built_in for weather in MAPS.get(m).weathers}
     built_in = tuple(f"eyas/{m}-" for m in MAPS.built_in)
     assert {name for name in gymnasium.registry if name.startswith(built_in)} == known
+
+
+@pytest.mark.parametrize("make", [eyas.make, eyas.make_vec])
+def test_settings_in_the_place_of_a_name_are_refused_in_one_line(make):
+    with pytest.raises(ConfigError, match=r"name: a dict is not allowed; .*the argument `config`"):
+        make({"world": {"map": "village"}})

@@ -22,6 +22,7 @@ from eyas.engine.state.draw import Picture
 from eyas.engine.state.motion import SAMPLE, Motion, joined
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.catalogue import KINDS
+from eyas.engine.traffic.recorded import Vehicles
 
 FEW = {"max_count": 4, "interval": 10.0, "group_size": 4}
 START = {"pitch": 1.37, "height": 8.0}
@@ -236,12 +237,13 @@ def test_a_crowd_beside_vehicles_is_kept_with_them_and_moves_as_alone():
         SimConfig(extras=[{"kind": "Pedestrian", "count": 3}, {"kind": "BB-8", "count": 2}])
     )
     scene = load_scene("citystreet")
-    around = CrowdSurroundings(scene, SampleClock(101, 10.0), 3)
     table = np.zeros((101, 2), SAMPLE)
     table["x"], table["present"] = 5.0, 1.0
-    vehicles = Motion(table, np.zeros(2, np.int32), 10.0, 0.0)
-    motion, targets = with_crowd(vehicles, crowd, around)
-    in_memory = joined([vehicles, *crowd_motions(crowd, around)])
+    driven = Motion(table, np.zeros(2, np.int32), 10.0, 0.0)
+    vehicles = Vehicles(lambda: driven, driven.kind, driven.lamps, 101, 10.0, (table,))
+    around = CrowdSurroundings(scene, SampleClock(101, 10.0), 3, vehicles)
+    motion, targets = with_crowd(crowd, around)
+    in_memory = joined([driven, *crowd_motions(crowd, around)])
     np.testing.assert_array_equal(motion.table, in_memory.table)
     np.testing.assert_array_equal(motion.kind, in_memory.kind)
     assert motion.kind.dtype == in_memory.kind.dtype

@@ -3,12 +3,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from eyas.engine.behaviours.groups import SampleClock
+from eyas.engine.sim.crowd import NOBODY
+from eyas.engine.sim.crowd_motion import CrowdSurroundings, with_crowd
 from eyas.engine.state.motion import ActorState
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.traffic import recorded
 from eyas.engine.traffic.config import Demand
 from eyas.engine.traffic.interpolation import interpolate_actors
-from eyas.engine.traffic.recorded import kept_motion, recorded_motion
+from eyas.engine.traffic.recorded import recorded_motion, recorded_vehicles
 from eyas.engine.traffic.recording import TrafficRecording
 from eyas.engine.traffic.recording_file import RecordingFile, to_bytes
 
@@ -60,8 +63,13 @@ def test_heights_between_samples_follow_the_motion(wandering, plane):
     np.testing.assert_allclose(z, 7.0 + EAST * x + NORTH * y, atol=2e-3)
 
 
-def file_of(recording):
-    return RecordingFile(to_bytes(recording), "drive.npz")
+def kept_motion(recording, terrain, kind):
+    file = RecordingFile(to_bytes(recording), "drive.npz")
+    vehicles = recorded_vehicles(file, terrain, kind, None)
+    clock = SampleClock(vehicles.samples, vehicles.rate)
+    motion, targets = with_crowd(NOBODY, CrowdSurroundings(None, clock, 0, vehicles))
+    assert targets.all()
+    return motion
 
 
 def test_a_motion_is_smoothed_once_and_then_read_from_the_cache(
@@ -73,16 +81,18 @@ def test_a_motion_is_smoothed_once_and_then_read_from_the_cache(
     kind = np.zeros(wandering.actors, np.int32)
     expected = recorded_motion(wandering, plane, kind)
     for _ in range(2):
-        kept = kept_motion(file_of(wandering), plane, kind)
+        kept = kept_motion(wandering, plane, kind)
         assert kept.table.dtype == expected.table.dtype
         assert kept.table.flags.aligned
         np.testing.assert_array_equal(kept.table, expected.table)
-        assert kept[1:] == expected[1:]
+        np.testing.assert_array_equal(kept.kind, expected.kind)
+        assert kept[2:4] == expected[2:4]
+        assert kept.lamps.size == 0
     assert len(smoothed) == 2  # the expected one, and one to keep
-    kept_motion(file_of(wandering), Terrain.flat(0.0), kind)
+    kept_motion(wandering, Terrain.flat(0.0), kind)
     assert len(smoothed) == 3
     config = wandering.provenance.config.model_copy(update={"demand": Demand.RESPAWN})
     groups = replace(wandering, provenance=replace(wandering.provenance, config=config))
-    brisk = kept_motion(file_of(groups), plane, kind)  # the same poses, smoothed less
+    brisk = kept_motion(groups, plane, kind)  # the same poses, smoothed less
     assert len(smoothed) == 4
     assert not np.array_equal(brisk.table, expected.table)

@@ -18,6 +18,7 @@ from eyas.engine.behaviours.pavements import (
     Walkway,
     along,
     bridged,
+    closed_blocks,
     is_hard,
     paved_parts,
     pavement_ways,
@@ -278,16 +279,18 @@ class WalkingGround:
 
     def __init__(self, scene: Scene, *, roads: bool, lights: SignalPlan | None = None) -> None:
         self.scene, self.lights = scene, lights
-        self.obstacles = GroundObstacles(scene, roads=roads)
-        self._roads = roads
+        self.solids = GroundObstacles(scene, roads=False)  # The obstacles without the roads
+        self.obstacles = self.solids
+        if roads:
+            self.obstacles = GroundObstacles(scene, roads=True, others=self.solids)
         # Pavement walkers are beside the roads by the choice of their ways.
         self.surface = WalkedSurface(scene)
         self.roadside = Roadside(scene.network, self.obstacles)
 
     @cached_property
-    def solids(self) -> GroundObstacles:
-        """The obstacles without the roads."""
-        return GroundObstacles(self.scene, roads=False) if self._roads else self.obstacles
+    def blocks(self) -> list[shapely.Polygon]:
+        """The blocks with roads all round."""
+        return closed_blocks(self.scene.network, self.scene.size)
 
 
 def walkways(
@@ -308,10 +311,8 @@ def walkways(
         obstacles = ground.solids
         found = kerb_ways(scene.footways, obstacles, ground.surface, radius, vehicles)
     else:
-        obstacles, extent = ground.obstacles, scene.size
-        found = pavement_ways(
-            scene.network, extent, obstacles, ground.surface, radius, verges=verges, lanes=lanes
-        )
+        obstacles, blocks = ground.obstacles, ground.blocks
+        found = pavement_ways(blocks, obstacles, ground.surface, radius, verges=verges, lanes=lanes)
     once = [outline(chain_through(way.corners, bend, 1)) for way in found]
     # A rounded corner may come too near to what the way leads round.
     lines = np.array([shapely.LineString(points) for points in once], object)

@@ -38,22 +38,29 @@ class GroundObstacles:
     Args:
         scene: The map.
         roads: Whether roads are obstacles too, as cars drive on them.
+        others: All but the roads, if they are known.
     """
 
-    def __init__(self, scene: Scene, *, roads: bool) -> None:
-        shapes = [
-            _prisms(scene),
-            _cylinders(scene),
-            _fixtures(scene.fixtures, as_placed=scene.footways.told),
-            _walls(scene),
-            _water(scene),
-            _steep(scene.terrain),
-            _beyond(scene),
-        ]
+    def __init__(
+        self, scene: Scene, *, roads: bool, others: "GroundObstacles | None" = None
+    ) -> None:
+        shapes = (
+            [others._tree.geometries]
+            if others is not None
+            else [
+                _prisms(scene),
+                _cylinders(scene),
+                _fixtures(scene.fixtures, as_placed=scene.footways.told),
+                _walls(scene),
+                _water(scene),
+                _steep(scene.terrain),
+                _beyond(scene),
+            ]
+        )
         if roads and len(scene.network.lane_width):
             shapes.append(np.array(split_on_grid(corridors(scene.network)), object))
         every = np.concatenate([np.asarray(part, object).ravel() for part in shapes])
-        self._tree = shapely.STRtree(every[~shapely.is_empty(every)])
+        self._tree: shapely.STRtree = shapely.STRtree(every[~shapely.is_empty(every)])
 
     def near(self, shape: shapely.Geometry, distance: float) -> NDArray[np.object_]:
         """Return the obstacles within a distance [m] of a shape."""

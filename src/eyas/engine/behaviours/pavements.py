@@ -43,8 +43,7 @@ class Walkway(NamedTuple):
 
 
 def pavement_ways(
-    network: RoadNetwork,
-    size: tuple[float, float],  # Extent of the map [m]
+    closed: Sequence[shapely.Polygon],  # Blocks with roads all round [m]
     obstacles: GroundObstacles,  # What stands in the way
     surface: WalkedSurface,  # The ground
     radius: float,  # Distance to obstacles that is kept [m]
@@ -56,10 +55,6 @@ def pavement_ways(
 
     Where a block has no pavement all round, they lead there and back.
     """
-    if not len(network.lane_width):
-        return []
-    extent = shapely.box(-size[0] / 2, -size[1] / 2, size[0] / 2, size[1] / 2)
-    closed, _ = blocks(road_area(network), extent)
     found = []
     for block in closed:
         for lane, beyond in enumerate(lanes):
@@ -74,6 +69,17 @@ def pavement_ways(
                     walked = bridged(under.pavement, is_hard(under.height))
                 found += paved_parts(line, walked, lane)
     return found
+
+
+def closed_blocks(
+    network: RoadNetwork,
+    size: tuple[float, float],  # Extent of the map [m]
+) -> list[shapely.Polygon]:
+    """Return the blocks with roads all round."""
+    if not len(network.lane_width):
+        return []
+    extent = shapely.box(-size[0] / 2, -size[1] / 2, size[0] / 2, size[1] / 2)
+    return blocks(road_area(network), extent)[0]
 
 
 def _ring(
@@ -113,8 +119,14 @@ def paved_parts(
 def along(ring: shapely.LinearRing) -> NDArray[np.float64]:
     """Return points along a ring, shape (K, 2) [m]."""
     places = np.arange(int(ring.length / _EVERY)) * _EVERY
-    points = shapely.line_interpolate_point(ring, places)
-    return np.asarray(shapely.get_coordinates(points), np.float64)
+    corners = shapely.get_coordinates(ring)
+    side = np.diff(corners, axis=0)
+    length = np.sqrt(np.square(side).sum(axis=1))
+    ends = np.cumsum(length)
+    at = np.searchsorted(ends, places, side="right")
+    share = (places - np.append(0.0, ends)[at]) / length[at]
+    points: NDArray[np.float64] = corners[at] + share[:, None] * side[at]
+    return points
 
 
 def bridged(

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.engine.state.scene import ObjectClass, Scene
 from eyas.engine.state.terrain import reliefs
+from eyas.lanes import compiled
 
 _WALKABLE: Final = (ObjectClass.GROUND, ObjectClass.ROAD, ObjectClass.PAVEMENT)
 
@@ -16,6 +17,12 @@ _NEAR: Final = 0.7
 
 _GRAIN: Final = 0.04
 """Distance between the points at which the ground is sought: slow robots share many [m]."""
+
+_ROUNDING: Final = 3.4e-16
+"""Largest error of which side of a line a point is on, as a share of what is subtracted (J. R.
+Shewchuk, 1997)."""
+
+_CLOSE: Final = 2  # So near to an edge that rounding decides on which side of it
 
 _ROW: Final = 2**31  # More than all points between one end of a map and the other
 
@@ -66,7 +73,7 @@ class WalkedSurface:
     def _exactly(self, points: Floats) -> Footing:
         floor = self._terrain.floor + reliefs(self._terrain, points)
         height, pavement = np.full(len(points), -np.inf), np.zeros(len(points), np.bool_)
-        which, what = self._tree.query(shapely.points(points), predicate="intersects")
+        which, what = self._under(points)
         if len(which):
             corner, across = self._corners[what, 0], self._across[what]
             aside = points[which] - corner[:, :2]
@@ -75,3 +82,35 @@ class WalkedSurface:
             top = z >= height[which] - 1e-6
             pavement[which[top]] = self._pavement[what[top]]
         return Footing(np.where(np.isfinite(height), height, floor), pavement)
+
+    def _under(self, points: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Return the pairs of points and triangles on which they lie; edges belong to both."""
+        which, what = self._tree.query(shapely.points(points))
+        found = np.empty(len(which), np.int8)
+        _test(points, self._corners, which, what, found)
+        close = np.flatnonzero(found == _CLOSE)
+        near = shapely.points(points[which[close]]), self._tree.geometries[what[close]]
+        found[close] = shapely.intersects(*near)
+        return which[found > 0], what[found > 0]
+
+
+@compiled
+def _test(
+    points: Floats,
+    corners: Floats,  # Of triangles, counter-clockwise from above, shape (T, 3, 3)
+    which: NDArray[np.intp],  # Points of the pairs
+    what: NDArray[np.intp],  # Triangles of the pairs
+    found: NDArray[np.int8],  # Filled: 1 where the point lies in the triangle, 0, or `_CLOSE`
+) -> None:
+    for k in range(len(which)):
+        x, y, own, inside = points[which[k], 0], points[which[k], 1], corners[what[k]], 1
+        for end in range(3):
+            ax, ay, bx, by = own[end - 1, 0], own[end - 1, 1], own[end, 0], own[end, 1]
+            left, right = (bx - ax) * (y - ay), (by - ay) * (x - ax)
+            error = _ROUNDING * (abs(left) + abs(right))
+            if left - right < -error:
+                inside = 0
+                break
+            if left - right <= error:
+                inside = _CLOSE
+        found[k] = inside

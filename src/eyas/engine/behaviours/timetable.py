@@ -1,17 +1,21 @@
 """When something is where on its path: speeds that curves and brakes allow."""
 
-import math
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.behaviours.chain import Chain, Poses, poses_on
+from eyas.engine.behaviours.chain import Chain, Poses, joints
 from eyas.engine.targets.habit import Habit
+from eyas.lanes import compiled
+from eyas.lanes.elementary import cos, sin
 
 Floats = NDArray[np.float64]
 
-_PHASES = 4  # Phases of a piece: turn on the spot, accelerate, keep the speed, brake
+_PHASES: Final = 4  # Phases of a piece: turn on the spot, accelerate, keep the speed, brake
+
+# Rows of the table of phases.
+_START, _DURATION, _SPEED, _RATE, _DONE = range(5)
 
 
 class TimedMotion(NamedTuple):
@@ -32,72 +36,96 @@ def ride(
 
     Speed changes evenly; where a curve would need too fast a turn, or a spin follows, it is lower.
     """
-    begin, ends = _speeds(chain, habit)
-    duration, v, rate = _phases(chain, habit, begin, ends)
-    start = np.cumsum(duration) - duration
-    phase = np.searchsorted(start, time, side="right") - 1
+    phases, at, made = _phases(chain, habit), joints(chain), np.empty((6, len(time)))
     # Phases that last no time are passed over, as the last of those that begin at once is found.
-    passed = np.minimum(time - start[phase], duration[phase])
-    piece, spinning = phase // _PHASES, phase % _PHASES == 0
-    way = v * duration + 0.5 * rate * np.square(duration)
-    done = np.cumsum(way) - way
-    first = done[::_PHASES]
-    travelled = done[phase] + v[phase] * passed + 0.5 * rate[phase] * np.square(passed)
-    along = np.clip(travelled - first[piece], 0.0, chain.length[piece])
-    poses = poses_on(chain, piece, along)
-    left = np.where(duration[phase] > 0.0, 1.0 - passed / np.maximum(duration[phase], 1e-12), 0.0)
-    # Before a spin is done, the rest of it is missing from the heading.
-    missing = np.where(spinning, chain.spin[piece] * left, 0.0)
-    speed = v[phase] + rate[phase] * passed
-    moving = time < start[phase] + duration[phase]
-    turning = np.where(spinning, np.sign(chain.spin[piece]) * habit.yaw_rate, 0.0)
-    yaw_rate = np.where(moving, turning + chain.curvature[piece] * speed, 0.0)
-    return TimedMotion(
-        Poses(poses.x, poses.y, poses.yaw - missing),
-        np.where(moving, np.maximum(speed, 0.0), 0.0),
-        yaw_rate,
-        travelled,
-    )
+    phase = np.searchsorted(phases[_START], time, side="right") - 1
+    pieces = np.stack([at.x[:-1], at.y[:-1], at.yaw[:-1], *chain[1:]])
+    _ride(phases, pieces, habit.yaw_rate, phase, time, made)
+    return TimedMotion(Poses(*made[:3]), *made[3:])
+
+
+@compiled
+def _ride(
+    phases: Floats,
+    pieces: Floats,  # x, y and heading at their beginnings, spin, length, curvature
+    turn: float,  # Yaw rate on the spot [rad/s]
+    phase: NDArray[np.int64],  # Phase at each time
+    time: Floats,
+    made: Floats,  # Filled: the numbers of `TimedMotion`, shape (6, K)
+) -> None:
+    for k in range(len(time)):
+        p = phase[k]
+        piece, spinning = p // _PHASES, p % _PHASES == 0
+        duration, speed, rate = phases[_DURATION, p], phases[_SPEED, p], phases[_RATE, p]
+        x, y, yaw = pieces[0, piece], pieces[1, piece], pieces[2, piece]
+        spin, length, bend = pieces[3, piece], pieces[4, piece], pieces[5, piece]
+        passed = min(time[k] - phases[_START, p], duration)
+        travelled = phases[_DONE, p] + speed * passed + 0.5 * rate * (passed * passed)
+        along = min(max(travelled - phases[_DONE, p - p % _PHASES], 0.0), length)
+        half = 0.5 * bend * along
+        chord = along * (1.0 if half == 0.0 else sin(half) / half)
+        moving = time[k] < phases[_START, p] + duration
+        # Before a spin is done, the rest of it is missing from the heading.
+        missing, turning = 0.0, 0.0
+        if spinning:
+            missing = spin * (1.0 - passed / max(duration, 1e-12) if duration > 0.0 else 0.0)
+            turning = turn if spin > 0.0 else -turn if spin < 0.0 else 0.0
+        made[0, k] = x + chord * cos(yaw + half)
+        made[1, k] = y + chord * sin(yaw + half)
+        made[2, k] = yaw + bend * along - missing
+        made[3, k] = max(speed + rate * passed, 0.0) if moving else 0.0
+        made[4, k] = turning + bend * (speed + rate * passed) if moving else 0.0
+        made[5, k] = travelled
 
 
 def time_of(chain: Chain, habit: Habit) -> float:
     """Return how long a path takes [s]."""
-    return float(_phases(chain, habit, *_speeds(chain, habit))[0].sum())
+    return float(_phases(chain, habit)[_DURATION].sum())
 
 
-def _speeds(chain: Chain, habit: Habit) -> tuple[Floats, Floats]:
-    """Return the speeds at the beginning and the end of each piece [m/s]."""
-    cap = _caps(chain, habit)
-    joint = np.minimum(np.append(cap, 0.0), np.append(cap[:1], cap))
-    joint[:-1][chain.spin != 0.0] = 0.0
-    # Numbers of Python's own: each depends on the one before, and those of numpy take longer.
-    gain: list[float] = (2.0 * habit.acceleration * chain.length).tolist()
-    at: list[float] = joint.tolist()
-    for i, more in enumerate(gain):
-        at[i + 1] = min(at[i + 1], math.sqrt(at[i] * at[i] + more))
-    for i in range(len(gain) - 1, -1, -1):
-        at[i] = min(at[i], math.sqrt(at[i + 1] * at[i + 1] + gain[i]))
-    return np.array(at[:-1]), np.array(at[1:])
+def _phases(chain: Chain, habit: Habit) -> Floats:
+    """Return start [s], duration [s], first speed [m/s], acceleration [m/s^2] of all phases of M
+    pieces, and the way until each [m], shape (5, 4 M).
+    """
+    phases = np.empty((5, _PHASES * len(chain.length)))
+    limits = habit.speed, habit.acceleration, habit.yaw_rate
+    _plan(chain.spin, chain.length, chain.curvature, *limits, phases)
+    return phases
 
 
-def _caps(chain: Chain, habit: Habit) -> Floats:
-    """Return the largest speed on each piece [m/s]."""
-    bend = np.maximum(np.abs(chain.curvature), 1e-9)
-    return np.minimum(habit.speed, habit.yaw_rate / bend)
-
-
-def _phases(
-    chain: Chain, habit: Habit, begin: Floats, end: Floats
-) -> tuple[Floats, Floats, Floats]:
-    """Return duration [s], first speed [m/s] and acceleration [m/s^2] of all phases, (4 M,)."""
-    gain = habit.acceleration
-    top = np.sqrt(gain * chain.length + 0.5 * (np.square(begin) + np.square(end)))
-    top = np.maximum(np.minimum(_caps(chain, habit), top), np.maximum(begin, end))
-    up, down = (top - begin) / gain, (top - end) / gain
-    ramps = (np.square(top) - np.square(begin) + np.square(top) - np.square(end)) / (2.0 * gain)
-    flat = np.maximum(chain.length - ramps, 0.0) / np.maximum(top, 1e-9)
-    zero = np.zeros_like(top)
-    duration = np.column_stack([np.abs(chain.spin) / habit.yaw_rate, up, flat, down]).ravel()
-    speed = np.column_stack([zero, begin, top, top]).ravel()
-    rate = np.column_stack([zero, zero + gain, zero, zero - gain]).ravel()
-    return duration, speed, rate
+@compiled
+def _plan(
+    spin: Floats,
+    length: Floats,
+    curvature: Floats,
+    fastest: float,
+    gain: float,
+    turn: float,
+    phases: Floats,
+) -> None:
+    count, joint = len(length), phases[_DONE]  # speeds at the joints, one more than pieces
+    top = phases[_START]  # the largest speed on each piece
+    for i in range(count):
+        top[i] = min(fastest, turn / max(abs(curvature[i]), 1e-9))
+    for i in range(count + 1):
+        joint[i] = 0.0 if i == count or spin[i] != 0.0 else min(top[i], top[max(i - 1, 0)])
+    for i in range(count):
+        joint[i + 1] = min(joint[i + 1], np.sqrt(joint[i] * joint[i] + 2.0 * gain * length[i]))
+    for i in range(count - 1, -1, -1):
+        joint[i] = min(joint[i], np.sqrt(joint[i + 1] * joint[i + 1] + 2.0 * gain * length[i]))
+    for i in range(count - 1, -1, -1):
+        a, b, p = joint[i], joint[i + 1], _PHASES * i
+        most = np.sqrt(gain * length[i] + 0.5 * (a * a + b * b))
+        most = max(min(top[i], most), max(a, b))
+        ramps = (most * most - a * a + most * most - b * b) / (2.0 * gain)
+        phases[_DURATION, p], phases[_SPEED, p], phases[_RATE, p] = abs(spin[i]) / turn, 0.0, 0.0
+        phases[_DURATION, p + 1], phases[_DURATION, p + 3] = (most - a) / gain, (most - b) / gain
+        phases[_DURATION, p + 2] = max(length[i] - ramps, 0.0) / max(most, 1e-9)
+        phases[_SPEED, p + 1], phases[_SPEED, p + 2], phases[_SPEED, p + 3] = a, most, most
+        phases[_RATE, p + 1], phases[_RATE, p + 2], phases[_RATE, p + 3] = gain, 0.0, -gain
+    passed, way = 0.0, 0.0
+    for p in range(_PHASES * count):
+        duration = phases[_DURATION, p]
+        gone = phases[_SPEED, p] * duration + 0.5 * phases[_RATE, p] * (duration * duration)
+        passed, way = passed + duration, way + gone
+        phases[_START, p], phases[_DONE, p] = passed - duration, way - gone

@@ -27,7 +27,7 @@ def quads(corners: ArrayLike, uvs: ArrayLike, material: Material) -> Mesh:
     """
     points = np.asarray(corners, np.float64).reshape(-1, 4, 3)
     normals = exact.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    normals /= np.maximum(exact.lengths(normals), 1e-12)[:, None]
     first = 4 * np.arange(len(points), dtype=np.int32)[:, None]
     triangles = np.concatenate(
         [first + np.array([0, 1, 2]), first + np.array([0, 2, 3])], axis=1

@@ -21,7 +21,6 @@ from eyas.engine.sim.scenes import Lenses, load_geometry, load_network, load_sce
 from eyas.engine.sim.views.additions import SignalLights, lights_of, signal_poles
 from eyas.engine.state.draw import Renderer
 from eyas.engine.state.lighting import Lighting
-from eyas.engine.state.motion import Motion
 from eyas.engine.state.roads import RoadGraph
 from eyas.engine.state.scene import Scene
 from eyas.engine.targets.catalogue import kind_index
@@ -32,7 +31,7 @@ from eyas.engine.traffic.library import CANONICAL_SEED, STANDARD_DURATION, find_
 from eyas.engine.traffic.live import LiveSumo
 from eyas.engine.traffic.net_file import SumoNet
 from eyas.engine.traffic.record import resolved, roads_for
-from eyas.engine.traffic.recorded import kept_lamps, kept_motion
+from eyas.engine.traffic.recorded import Vehicles, recorded_vehicles
 from eyas.engine.traffic.replay import Replay
 from eyas.engine.traffic.signals import SignalPlan, load_plan, signal_plan, walk_plan
 from eyas.engine.traffic.source import TrafficSource
@@ -154,14 +153,14 @@ def _traffic(
     vehicles = _vehicles(map_name, seed, config, trackers, crowd)
     clock = SampleClock(round(STANDARD_DURATION * _RATE) + 1, _RATE)
     if vehicles is not None:
-        clock = SampleClock(len(vehicles.table), vehicles.rate)
+        clock = SampleClock(vehicles.samples, vehicles.rate)
     # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)
     finished, lights = MAPS.get(map_name).roads(seed).finished, None
     if scene.footways.told and finished:
         lights = walk_plan(SumoNet(finished))
     around = CrowdSurroundings(scene, clock, _seed_of(config), vehicles, lights)
-    motion, targets = with_crowd(vehicles, crowd, around)
+    motion, targets = with_crowd(crowd, around)
     replay = Replay(motion, targets)
     let_go(motion.table)  # which has been read to its end
     return replay
@@ -195,8 +194,8 @@ def _seed_of(config: TrafficConfig) -> int:
 
 def _vehicles(
     map_name: str, seed: int, config: TrafficConfig, trackers: int, crowd: Crowd
-) -> Motion | None:
-    """Return the motion of SUMO's vehicles; None if none are wanted."""
+) -> Vehicles | None:
+    """Return SUMO's vehicles; None if none are wanted."""
     if vehicles_of(crowd, config.max_vehicles) == 0:
         return None
     recipe = MAPS.get(map_name)
@@ -208,14 +207,9 @@ def _vehicles(
         cover=partial(cover_of, map_name, seed),
     )
     kind = np.array([kind_index(name) for name in file.outline().vehicle_types], np.int32)
-    motion = kept_motion(file, load_scene(map_name, seed).terrain, kind)
-    if config.lamps is Lamps.WORKING:
-        lamps = kept_lamps(file, motion, load_network(map_name, seed))
-        motion = motion._replace(lamps=lamps)
-    count = vehicles_of(crowd, len(kind))
-    return motion._replace(
-        table=motion.table[:, :count], kind=kind[:count], lamps=motion.lamps[:, :count]
-    )
+    network = load_network(map_name, seed) if config.lamps is Lamps.WORKING else None
+    terrain = load_scene(map_name, seed).terrain
+    return recorded_vehicles(file, terrain, kind[: vehicles_of(crowd, len(kind))], network)
 
 
 @lru_cache(maxsize=8)

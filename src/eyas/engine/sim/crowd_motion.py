@@ -1,6 +1,5 @@
 """The motion of a crowd: of the targets that are not vehicles of SUMO's, and of extras."""
 
-import itertools
 import zlib
 from collections.abc import Callable, Sequence
 from functools import cache, partial
@@ -23,6 +22,7 @@ from eyas.engine.state.motion import SAMPLE, Motion, joined
 from eyas.engine.state.scene import Scene
 from eyas.engine.targets.catalogue import MODELS, habit_of, kind_index, models_of
 from eyas.engine.targets.habit import Behaviour
+from eyas.engine.traffic.recorded import Vehicles
 from eyas.engine.traffic.signals import SignalPlan
 from eyas.lanes import exact
 
@@ -40,7 +40,7 @@ class CrowdSurroundings(NamedTuple):
     scene: Scene
     clock: SampleClock  # Number of samples, and their rate
     seed: int  # Of places and ways
-    vehicles: Motion | None = None
+    vehicles: Vehicles | None = None
     """The vehicles, for which those wait who cross roads; None: there are none, or their motion is
     not known in advance."""
     lights: SignalPlan | None = None
@@ -75,63 +75,66 @@ def live_motions(crowd: Crowd, around: CrowdSurroundings) -> list[Motion]:
 
 
 def with_crowd(
-    vehicles: Motion | None,  # The vehicles; None: there are none
     crowd: Crowd,
     around: CrowdSurroundings,  # Where and when it moves
 ) -> tuple[Motion, NDArray[np.bool_]]:
-    """Return the motion of vehicles and, after them, of a crowd, and who may be a target.
+    """Return the motion of the vehicles and, after them, of a crowd, and who may be a target.
 
     Raises:
         SpawnError: The map has no room for all.
     """
-    before = [] if vehicles is None else [vehicles]
-    if crowd.custom is None and _groups(crowd, around.clock):
-        motion, counts = _all_kept(before, crowd, around)
-    else:
-        every = [*before, *crowd_motions(crowd, around)]
-        motion, counts = joined(every), [len(one.kind) for one in every]
-    above = _above(crowd, around)
-    motion, counts = joined([motion, *above]), [*counts, *(len(one.kind) for one in above)]
-    followed = 0 if crowd.follows_vehicles else len(before)
-    return motion, np.repeat(np.arange(len(counts)) == followed, counts)
+    groups = _groups(crowd, around.clock) if crowd.custom is None else []
+    motion, counts = _all_kept(groups, crowd, around) if groups or around.vehicles else (None, [])
+    first = 0 if around.vehicles is None else len(around.vehicles.kind)
+    if motion is not None and around.vehicles is not None:
+        driven = motion._replace(table=motion.table[:, :first], kind=motion.kind[:first])
+        around = around._replace(vehicles=around.vehicles._replace(motion=lambda: driven))
+    others = [] if crowd.custom is None else crowd_motions(crowd, around)
+    others += _above(crowd, around)
+    counts += [len(one.kind) for one in others]
+    followed = 0 if crowd.follows_vehicles or around.vehicles is None else 1
+    return (
+        joined([*([] if motion is None else [motion]), *others]),
+        np.repeat(np.arange(len(counts)) == followed, counts),
+    )
 
 
 def _above(crowd: Crowd, around: CrowdSurroundings) -> list[Motion]:
     """Return the motions of what flies."""
-    scene, clock, seed = around.scene, around.clock, around.seed
-    return air_motions(crowd.airborne, scene, clock, seed, around.vehicles)
+    scene, clock, seed, vehicles = around[:4]
+    followed = vehicles.motion() if vehicles is not None and crowd.airborne.drones else None
+    return air_motions(crowd.airborne, scene, clock, seed, followed)
 
 
 def _all_kept(
-    before: Sequence[Motion], crowd: Crowd, around: CrowdSurroundings
+    groups: Sequence[ScriptedGroup], crowd: Crowd, around: CrowdSurroundings
 ) -> tuple[Motion, list[int]]:
     """Return the motion of vehicles and groups as one entry of the cache, and how many each are.
 
     Joined in memory, that of 400 people would take half a gigabyte of each process, of which it
     reads little.
     """
-    groups = _groups(crowd, around.clock)
-    ground = cache(partial(_ground, around, crowd.driven))
-    parts = [
+    ground, vehicles = cache(partial(_ground, around, crowd.driven)), around.vehicles
+    parts: list[Callable[[], NDArray[np.float32]]] = [
         partial(_numbers_of, group, number, around, ground) for number, group in enumerate(groups)
     ]
-    tables = [motion.table for motion in before]
     depends_on = [
         _depends_on(group, number, around, crowd.driven) for number, group in enumerate(groups)
     ]
     counts = [int(group.lifetimes.slot.max()) + 1 for group in groups]
-    shape = around.clock.samples, sum(counts, sum(table.shape[1] for table in tables))
-    make, inputs = partial(_side_by_side, tables, parts, shape), (_numbers_of, *tables, *depends_on)
+    kind = np.repeat([kind_index(group.kind) for group in groups], counts).astype(np.int32)
+    inputs: tuple[object, ...] = (_numbers_of, *depends_on)
+    if vehicles is not None:
+        inputs, counts = (*inputs, vehicles.origin), [len(vehicles.kind), *counts]
+        parts, kind = [partial(_driven, vehicles), *parts], np.concatenate([vehicles.kind, kind])
+    make = partial(_side_by_side, parts, (around.clock.samples, sum(counts)))
     numbers = cached(EntryKind.MOTION, make, inputs, of=NDArray[np.float32])
-    indices = [kind_index(group.kind) for group in groups]
-    kind = np.concatenate([*(one.kind for one in before), np.repeat(indices, counts)])
     table = numbers.view(SAMPLE)[..., 0]
     lamps = np.zeros((0, 0), np.uint8)
-    if before and before[0].lamps.size:
+    if vehicles is not None and vehicles.lamps.size:
         lamps = np.zeros(table.shape, np.uint8)
-        lamps[:, : len(before[0].kind)] = before[0].lamps
-    motion = Motion(table, kind.astype(np.int32), around.clock.rate, 0.0, lamps)
-    return motion, [*(len(one.kind) for one in before), *counts]
+        lamps[:, : len(vehicles.kind)] = vehicles.lamps
+    return Motion(table, kind, around.clock.rate, 0.0, lamps), counts
 
 
 def _ground(around: CrowdSurroundings, driven: bool) -> "WalkingGround":
@@ -142,16 +145,20 @@ def _ground(around: CrowdSurroundings, driven: bool) -> "WalkingGround":
 
 
 def _side_by_side(
-    tables: Sequence[NDArray[np.void]],
     parts: Sequence[Callable[[], NDArray[np.float32]]],
     shape: tuple[int, int],  # Of the whole: samples, actors
 ) -> NDArray[np.float32]:
     made, first = np.zeros((*shape, len(SAMPLE.names or ())), np.float32), 0
-    driven = (table.view(np.float32).reshape(*table.shape, -1) for table in tables)
-    for numbers in itertools.chain(driven, (part() for part in parts)):  # one at a time in memory
+    for part in parts:  # one at a time in memory
+        numbers = part()
         made[:, first : first + numbers.shape[1]] = numbers
         first += numbers.shape[1]
     return made
+
+
+def _driven(vehicles: Vehicles) -> NDArray[np.float32]:
+    table = vehicles.motion().table
+    return table.view(np.float32).reshape(*table.shape, -1)
 
 
 def _kept(
@@ -179,7 +186,8 @@ def _numbers_of(
     from eyas.engine.behaviours.scripted import scripted_table  # with shapely
 
     rng = stream(around.seed, "crowd", number, zlib.crc32(group.kind.encode()))
-    table = scripted_table(ground(), group, around.clock, rng, around.vehicles)
+    vehicles = None if around.vehicles is None else around.vehicles.motion()
+    table = scripted_table(ground(), group, around.clock, rng, vehicles)
     return table.view(np.float32).reshape(*table.shape, -1)
 
 
@@ -191,7 +199,7 @@ def _depends_on(
     crosses = group.behaviour is Behaviour.CROSSING
     along = group.behaviour in (Behaviour.PAVEMENT, Behaviour.VERGE, Behaviour.RIDE)
     heeds = crosses or (scene.footways.told and along)
-    waits_for = (vehicles.table, vehicles.kind) if heeds and vehicles is not None else ()
+    waits_for = vehicles.origin if heeds and vehicles is not None else ()
     obeys = lights if crosses else None
     moves = group._replace(setting="", chosen_by="")  # which only messages name
     return (_ground, _plan_of(scene), moves, clock, seed, number, driven, waits_for, obeys)
@@ -235,8 +243,8 @@ def _custom(
     """Return the motion of a target of one's own; not kept, as its class may have changed."""
     from eyas.engine.custom.motion import Places, custom_motion  # with shapely
 
-    clock = around.clock
-    places = Places(_lifetimes(crowd, clock), crowd.objects.offset, around.vehicles)
+    clock, vehicles = around.clock, around.vehicles and around.vehicles.motion()
+    places = Places(_lifetimes(crowd, clock), crowd.objects.offset, vehicles)
     return custom_motion(custom, places, ground, clock, stream(around.seed, "custom"))
 
 

@@ -1,6 +1,8 @@
 """Conversion of a recording to a motion."""
 
-from functools import partial
+from collections.abc import Callable
+from functools import cache, partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,39 +20,46 @@ from eyas.lanes import compiled
 from eyas.lanes.elementary import atan, sin_cos
 
 
-def kept_motion(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
-    """Return `recorded_motion`, kept in the cache.
+class Vehicles(NamedTuple):
+    """Vehicles whose motion is known in advance, made when it is asked for first."""
+
+    motion: Callable[[], Motion]  # Takes two tenths of a second
+    kind: NDArray[np.int32]  # See `Motion`
+    lamps: NDArray[np.uint8]  # See `Motion`
+    samples: int
+    rate: float  # [Hz]
+    origin: tuple[object, ...]  # What the motion depends on
+
+
+def recorded_vehicles(
+    file: RecordingFile,
+    terrain: Terrain,  # The ground; roads follow its relief
+    kind: NDArray[np.int32],  # Kind of each that is in the world, the first of the file
+    network: RoadNetwork | None,  # The roads of its map; None: lamps are dark
+) -> Vehicles:
+    """Return the vehicles of a file; their lamps are kept in the cache.
 
     Raises:
         DataFileError: The file is damaged or not a recording.
     """
-    numbers = cached(
-        EntryKind.MOTION,
-        partial(_numbers, file, terrain),
-        (np.frombuffer(file.data, np.uint8), terrain),
-        of=NDArray[np.float32],
-    )
-    return Motion(numbers.view(SAMPLE)[..., 0], kind, file.outline().rate, 0.0)
+    motion, outline = cache(partial(_first, file, terrain, kind)), file.outline()
+    origin = _first, np.frombuffer(file.data, np.uint8), terrain, kind
+    lamps = np.zeros((0, 0), np.uint8)
+    if network is not None:
+        make = partial(_lamps, motion, network)
+        lamps = cached(EntryKind.MOTION, make, (*origin, network), of=NDArray[np.uint8])
+    return Vehicles(motion, kind, lamps, outline.samples, outline.rate, origin)
 
 
-def kept_lamps(
-    file: RecordingFile,
-    motion: Motion,
-    network: RoadNetwork,  # The roads of its map
-) -> NDArray[np.uint8]:
-    """Return `Motion.lamps` of the motion of a file, kept in the cache."""
-    return cached(
-        EntryKind.MOTION,
-        partial(lamps_of, motion.table, motion.rate, network),
-        (np.frombuffer(file.data, np.uint8), network),
-        of=NDArray[np.uint8],
-    )
+def _first(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
+    """Return the motion of the first vehicles of a file."""
+    table = table_of(smooth(file.load()), terrain)[:, : len(kind)]
+    return Motion(table, kind, file.outline().rate, 0.0)
 
 
-def _numbers(file: RecordingFile, terrain: Terrain) -> NDArray[np.float32]:
-    """Return the numbers of the samples of a recording, shape (S, A, numbers of a sample)."""
-    table = table_of(smooth(file.load()), terrain)
-    return table.view(np.float32).reshape(*table.shape, -1)
+def _lamps(motion: Callable[[], Motion], network: RoadNetwork) -> NDArray[np.uint8]:
+    made = motion()
+    return lamps_of(made.table, made.rate, network)
 
 
 def recorded_motion(

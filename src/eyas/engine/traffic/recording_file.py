@@ -58,6 +58,7 @@ class Outline(NamedTuple):
     """What the header of a file says."""
 
     provenance: Provenance
+    samples: int
     rate: float  # Samples per second [Hz]
     vehicle_types: tuple[VehicleType, ...]  # Class of each actor
 
@@ -215,7 +216,8 @@ def _outline(header: dict[str, Any], source: str) -> Outline:
     origin = _provenance(header, source)
     # One class is that of all actors.
     classes = header.get("vehicle_types", [origin.config.vehicle_type] * header["shape"][1])
-    return Outline(origin, float(header["rate"]), tuple(map(VehicleType, classes)))
+    samples, rate = int(header["shape"][0]), float(header["rate"])
+    return Outline(origin, samples, rate, tuple(map(VehicleType, classes)))
 
 
 def _provenance(header: dict[str, Any], source: str) -> Provenance:

@@ -25,7 +25,7 @@ class Crown:
 
     def depth(self, points: Array) -> Array:
         """Return the depth of points within the crown, negative outside, shape (P,)."""
-        distance = np.linalg.norm(points[:, None] - self.centres, axis=2)
+        distance = exact.lengths(points[:, None] - self.centres)
         return np.asarray((self.radii - distance).max(axis=1), np.float64)
 
     def surface(self, count: int, rng: np.random.Generator) -> tuple[Array, Array]:

@@ -23,8 +23,8 @@ _made: dict[EntryKind, float] = {}  # How long this process has made what [s]
 
 @contextmanager
 def reported(kind: EntryKind) -> Iterator[None]:
-    """Report that something is being made, in a record of the log that has `passing`: the next one
-    takes its place on a terminal.
+    """Report that something is being made, in a record of the log whose `passing` is the stage:
+    the next one takes its place on a terminal.
     """
     log, start, kinds = logging.getLogger("eyas"), time.perf_counter(), list(_STAGES)
     if kind not in _STAGES:
@@ -36,9 +36,9 @@ def reported(kind: EntryKind) -> Iterator[None]:
     left *= sum(_made.values()) / usual if usual > 1.0 else 1.0
     if left > 0.5:  # a shorter rest is not worth telling
         line = "making %s, once; %.0f %% done, about %.0f s left"
-        log.info(line, _STAGES[kind][0], done, max(left, 1.0), extra={"passing": True})
+        log.info(line, _STAGES[kind][0], done, max(left, 1.0), extra={"passing": kind})
     try:
         yield
     finally:
         _made[kind] = _made.get(kind, 0.0) + time.perf_counter() - start
-        log.info("", extra={"passing": True})
+        log.info("", extra={"passing": kind})

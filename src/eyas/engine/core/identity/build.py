@@ -6,6 +6,7 @@ data that come with them. Of libraries it tells those whose versions change what
 with all others that `pyproject.toml` admits, the bytes are the same (`docs/reproducibility.md`).
 """
 
+import os
 from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from hashlib import sha256
@@ -15,7 +16,6 @@ from pathlib import Path
 from eyas.engine.core.config import Config
 from eyas.engine.core.doors import houses
 from eyas.engine.core.identity.definitions import INDEX
-from eyas.engine.core.identity.program import definitions_in
 from eyas.lanes.text_index import SUFFIX
 
 WORLD = frozenset(
@@ -116,16 +116,16 @@ def _installed() -> Iterator[tuple[str, str]]:
 
 def _digest_of(folder: Path, rooms: Collection[Path]) -> str:
     """Return a digest of the files in a folder, without those of rooms in it."""
-    inner = tuple(f"{room.as_posix()}/" for room in rooms if folder in room.parents)
+    others, found = {str(room) for room in rooms}, list[str]()
+    for at, inner, files in os.walk(folder):
+        inner[:] = [n for n in inner if n != "__pycache__" and f"{at}/{n}" not in others]
+        found += [f"{at}/{file}" for file in files if not file.endswith(_SILENT)]
     digest = sha256()
-    for path in sorted(folder.rglob("*")):
-        inside = path.relative_to(_ROOT).as_posix()
-        if not path.is_file() or "__pycache__" in path.parts or path.suffix in _SILENT:
-            continue
-        if inside.startswith(_CODE_OF_KERNELS) or path.as_posix().startswith(inner):
-            continue
-        content = path.read_bytes()
-        if path.suffix == ".py":
-            content = repr(definitions_in(content)).encode()
-        digest.update(f"{inside} {len(content)} ".encode() + content)
+    for path in sorted(found):
+        inside = path.removeprefix(f"{_ROOT}/")
+        if not inside.startswith(_CODE_OF_KERNELS):
+            content = Path(path).read_bytes()
+            if path.endswith(".py"):
+                content = INDEX.json_of(content)
+            digest.update(f"{inside} {len(content)} ".encode() + content)
     return digest.hexdigest()[:8]

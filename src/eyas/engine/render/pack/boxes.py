@@ -23,7 +23,8 @@ def box_of(positions: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return the least and the largest coordinates of points, shape (6,); 0 if there are none."""
     if len(positions) == 0:
         return np.zeros(6, np.float32)
-    return np.concatenate([positions.min(axis=0), positions.max(axis=0)])
+    columns = np.ascontiguousarray(positions.T)  # several times as fast
+    return np.concatenate([columns.min(axis=1), columns.max(axis=1)])
 
 
 def sphere_of(positions: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -83,7 +84,7 @@ def _points(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     corners = mesh.positions[mesh.triangles].astype(np.float64)
     points = exact.product(np.moveaxis(corners, 2, 0), share.T)
     across = exact.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.linalg.norm(across, axis=1)
+    area = exact.lengths(across)
     return points.reshape(3, -1), np.repeat(area, len(share))
 
 

@@ -17,6 +17,7 @@ from eyas.engine.render.pack.boxes import (
     silhouette,
     sphere_of,
 )
+from eyas.engine.render.pack.clusters import ends_of
 from eyas.engine.render.pack.materials import material_table
 from eyas.engine.render.pack.pool import Pool
 from eyas.engine.render.pack.triangles import shading_rows
@@ -97,11 +98,12 @@ def _add_chunks(pool: Pool, scene: Scene) -> NDArray[np.float32]:
     """Add the static mesh square by square; return boxes around them, shape (C, 6)."""
     mesh = scene.static
     corners = mesh.positions[mesh.triangles]
-    middle = (corners.min(axis=1) + corners.max(axis=1))[:, :2] / 2
+    least, most = ends_of(corners)
+    middle = (least + most)[:, :2] / 2
     cell = np.floor(middle / CHUNK).astype(np.int64)
     cell -= cell.min(axis=0, initial=0)
     # A triangle much larger than a square would enlarge that square's box, so it is kept apart.
-    span = (corners.max(axis=1) - corners.min(axis=1))[:, :2].max(axis=1, initial=0)
+    span = (most - least)[:, :2].max(axis=1, initial=0)
     key = np.where(span > 4 * CHUNK, -1, _morton(cell))
     size = _detail_sizes(scene, corners)
     order = np.lexsort((-size, key))

@@ -17,7 +17,7 @@ def solid_triangles(
     """Return which triangles have an area, shape (T,)."""
     a, b, c = np.moveaxis(corners.astype(np.float64), 1, 0)
     e1, e2 = b - a, c - a
-    solid: NDArray[np.bool_] = np.linalg.norm(exact.cross(e1, e2), axis=1) > 1e-10
+    solid: NDArray[np.bool_] = exact.lengths(exact.cross(e1, e2)) > 1e-10
     # `gradients` divides by this difference, in which the rounding of its terms remains: of a long
     # sliver nothing else may be left, although its area is not 0.
     whole = _dot(e1, e1) * _dot(e2, e2)

@@ -48,17 +48,17 @@ def packed_layers(
 
 
 def _packed(image: NDArray[np.uint8]) -> NDArray[np.uint32]:
-    texels = np.empty(image.shape)  # v grows upwards, rows grow downwards
-    texels[..., :3], texels[..., 3] = _LINEAR[image[::-1, :, :3]], image[::-1, :, 3] / 255.0
-    level = np.dstack([_KEPT[image[::-1, :, :3]], image[::-1, :, 3:]])
+    image = image[::-1]  # v grows upwards, rows grow downwards
+    texels, level = _LINEAR.take(image), _KEPT.take(image)
+    texels[..., 3], level[..., 3] = image[..., 3] / 255.0, image[..., 3]
     sheet = np.zeros((TEXELS // TEXELS_IN_ROW, TEXELS_IN_ROW), np.uint32)
     top, left = 0, 0
     for number in range(LEVELS):
         if number > 0:
-            texels = (texels[::2] + texels[1::2]) / 2
-            texels = (texels[:, ::2] + texels[:, 1::2]) / 2
-            alpha = np.round(texels[..., 3] * 255.0).astype(np.uint8)
-            level = np.dstack([_kept(texels[..., :3]), alpha])
+            texels = texels[::2] + texels[1::2]
+            texels = (texels[:, ::2] + texels[:, 1::2]) * 0.25
+            level = np.empty(texels.shape, np.uint8)
+            level[..., :3], level[..., 3] = _kept(texels[..., :3]), np.round(texels[..., 3] * 255.0)
         packed = level.view("<u4")[..., 0]
         repeated = np.arange(len(packed) + 1) % len(packed)
         size = len(repeated)

@@ -98,7 +98,8 @@ class ParkedObjects:
         meshes = [fixtures.levels[kind][0] for kind in used.tolist()]
         vertices = [mesh.positions for mesh in meshes]
         triangles = [mesh.triangles for mesh in meshes]
-        self._most = max(map(len, vertices), default=0)
+        self._place = np.zeros((max(map(len, vertices), default=0), 3))
+        self._near = np.zeros((0, 0), np.float32)
         self._copies = PackedBundle(
             _Copies(
                 row=rows,
@@ -137,6 +138,8 @@ class ParkedObjects:
             return []
         height, width = shown.shape
         count = len(self.objects)
+        if self._near.shape != shown.shape:  # kept, as new memory takes longer than the rest
+            self._near = np.zeros(shown.shape, np.float32)
         nothing = np.array([_FAR, _FAR, -_FAR, -_FAR])
         focal = focal_length(width, float(cameras.field_of_view[tracker]))
         query = _Query(
@@ -147,8 +150,8 @@ class ParkedObjects:
             camera=np.array([focal, *principal_point(lens or NO_LENS, width, height)]),
             bent=int(lens is not None),
             lens=lens or NO_LENS,
-            near=np.zeros(shown.shape, np.float32),
-            place=np.zeros((self._most, 3)),
+            near=self._near,
+            place=self._place,
             pixels=np.zeros((count, 2), np.int32),
             visible_box=np.tile(nothing.astype(np.int32), (count, 1)),
             box=np.tile(nothing.astype(np.int32), (count, 1)),
