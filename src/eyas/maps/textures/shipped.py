@@ -18,7 +18,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.zip")
 
-SHA256 = "43f5a38e42214d7da37b930a479e9e010f1cbf6fb984f62d946495d715ef2591"
+SHA256 = "8939ca18f6fd7d80055ceb81bcce6c48611f63551d33e0bb99ee90e56547f0cd"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 
