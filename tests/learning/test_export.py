@@ -35,10 +35,11 @@ def test_onnx_gives_what_pytorch_gives(memory, size, tmp_path):
         with torch.no_grad():
             logits, _, after = network(torch.from_numpy(picture), state)
         got = session.run(None, {"image": picture, "last_action": last, **carried})
-        assert np.allclose(got[0], logits.numpy(), atol=1e-3)
+        # The file has weights of float16.
+        assert np.allclose(got[0], logits.numpy(), atol=2e-2)
         action = logits.argmax(1)
         state = network.next_state(action, after)
         last = np.eye(ACTIONS, dtype=np.float32)[action.numpy()]
         carried = {"memory": got[1]} if memory else {}
         if memory:
-            assert np.allclose(got[1], after.numpy(), atol=1e-4)
+            assert np.allclose(got[1], after.numpy(), atol=2e-3)

@@ -142,7 +142,7 @@ def test_the_file_answers_as_the_network(tmp_path):
     session = onnxruntime.InferenceSession(tmp_path / "policy.onnx")
     found = session.run(OUTPUTS, {name: part.numpy() for name, part in feed.items()})
     for one, other in zip(found, wanted, strict=True):
-        np.testing.assert_allclose(one, other.numpy(), atol=1e-3)
+        np.testing.assert_allclose(one, other.numpy(), atol=2e-2)
     assert open_policy(str(tmp_path / "policy.onnx"), {}).settings.gate == 2.5
 
 

@@ -17,6 +17,9 @@ from eyas.engine.settings.env import EnvConfig
 from eyas.learning.network import ACTIONS, HOVER, STRIDE, TrackingNetwork
 
 _OPSET = 17
+_HALVED = 1024
+"""Numbers from which on a tensor is stored as float16, which halves files; runtimes compute with
+float32."""
 
 
 class OnnxGraph:
@@ -29,6 +32,10 @@ class OnnxGraph:
     def weight(self, name: str, values: Any) -> str:  # noqa: ANN401  # whatever numpy takes
         """Add a tensor, an array or a number; return its name."""
         array = values.detach().cpu().numpy() if isinstance(values, Tensor) else np.asarray(values)
+        if array.dtype == np.float32 and array.size >= _HALVED:
+            half = f"{name}.half"
+            self.weights.append(numpy_helper.from_array(array.astype(np.float16), half))
+            return self.node("Cast", [half], name, to=TensorProto.FLOAT)
         self.weights.append(numpy_helper.from_array(np.ascontiguousarray(array), name))
         return name
 

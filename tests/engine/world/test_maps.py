@@ -49,7 +49,8 @@ def test_a_map_ships_the_roads_and_the_traffic_of_seed_0(name):
     }
     canonical = {respawn_file(size) for size in RESPAWN_GROUPS}
     lost = {
-        drivers_file(drivers)
+        drivers_file(drivers, seed)
+        for seed in (None, TEST_TRAFFIC[0])
         for drivers, maps in {
             "hiding": ("citystreet", "village"),
             "evading": ("citystreet", "downtown"),
