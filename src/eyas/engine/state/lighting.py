@@ -23,7 +23,7 @@ class Horizon:
 
 @dataclass(frozen=True, slots=True)
 class Lighting:
-    """Light and air of a weather. Colours: linear RGB radiance, about 1.3 for white paper in sun."""
+    """Light and air of a weather. Colours: linear radiance, about 1.3 for white paper in sun."""
 
     sun_direction: tuple[float, float, float]
     """Unit vector towards the sun."""
