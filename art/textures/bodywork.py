@@ -171,6 +171,9 @@ def _roof(sheet: Sheet, back: float, front: float) -> None:
     sheet.line([(back, 0.69), (front, 0.69)], 0.04, 1.0, 0.3)
     for x in (back, front):
         sheet.line([(x, -0.1), (x, 0.8)], 0.03, _SEAM, 0.7)
+    for y in (0.24, 0.5):  # swages along the roof
+        sheet.line([(back + 0.14, y), (front - 0.14, y)], 0.05, 0.6 * BASE, 0.6)
+        sheet.line([(back + 0.14, y + 0.045), (front - 0.14, y + 0.045)], 0.035, 1.0, 0.7)
     # A roof is a little lower at its edges and ends, and so a little darker there.
     sheet.line([(back + 0.1, 0.4), (back + 0.1, -0.1)], 0.14, 0.85 * BASE, 0.5)
 
@@ -211,13 +214,17 @@ def _van_top(sheet: Sheet) -> None:
 
 
 def _bus_top(sheet: Sheet) -> None:
-    sheet.line([(0.0, 0.72), (_LONG, 0.72)], 0.03, _SEAM, _SOFT)
-    sheet.line([(0.0, 0.66), (_LONG, 0.66)], 0.03, 1.0, 0.4)
+    sheet.line([(0.0, 0.72), (_LONG, 0.72)], 0.03, _SEAM, 0.8)
+    sheet.line([(0.0, 0.66), (_LONG, 0.66)], 0.03, 1.0, 0.7)
+    for y in (0.16, 0.46):  # swages along the roof
+        sheet.line([(0.0, y), (_LONG, y)], 0.05, 0.6 * BASE, 0.8)
+        sheet.line([(0.0, y + 0.05), (_LONG, y + 0.05)], 0.04, 1.0, 0.8)
     for x in np.linspace(0.05, 0.95, 9) * _LONG:
-        sheet.line([(float(x), -0.1), (float(x), 0.7)], 0.025, _SEAM, 0.4)
+        sheet.line([(float(x), -0.1), (float(x), 0.7)], 0.025, _SEAM, 0.8)
     for x in (0.42, 0.56, 0.9):  # hatches
-        sheet.box((x * _LONG - 0.14, -0.2), (x * _LONG + 0.14, 0.26), 0.45 * BASE)
+        sheet.box((x * _LONG - 0.14, -0.2), (x * _LONG + 0.14, 0.26), _SEAM)
         sheet.box((x * _LONG - 0.115, -0.2), (x * _LONG + 0.115, 0.23), 1.0)
+        sheet.box((x * _LONG - 0.085, -0.2), (x * _LONG + 0.085, 0.17), 0.35 * BASE)
 
 
 def _band(sheet: Sheet) -> None:
@@ -296,7 +303,7 @@ def panes() -> Texture:
     side.box((0.28, -0.1), (0.56, 0.2), 0.13, round_=0.08)
     side.box((0.34, 0.2), (0.5, 0.31), 0.15, round_=0.05)
     for sheet, size, width in (
-        (screen, (1.3, 0.75), 0.05), (rear, (1.2, 0.6), 0.05), (side, (0.95, 0.4), 0.035),
+        (screen, (1.3, 0.75), 0.05), (rear, (1.2, 0.6), 0.07), (side, (0.95, 0.4), 0.035),
     ):  # fmt: skip
         sheet.frame((0.0, 0.0), size, width, 0.004)
     return texture_of(tones + _DUST * np.abs(fractal(source("panes"), 1.3, longest=60.0)))

@@ -57,7 +57,7 @@ def two_wheeler(
         size=size,
         wheelbase=wheelbase,
         wheel_radius=radius,
-        axles=(Axle(front, 0.0, 0.12, steered=True), Axle(front - wheelbase, 0.0, 0.15)),
+        axles=(Axle(front, 0.0, 0.12, steered=True), Axle(front - wheelbase, 0.0, 0.19)),
         lean=LEAN_LIMIT,
         mass=mass,
         words=words,

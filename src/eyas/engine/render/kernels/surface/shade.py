@@ -331,9 +331,9 @@ def shade_point(
         mirror = _smoothness(surface, alpha)
         if any_of(mirror > zero):
             facing = lesser(greater(cosine, zero), one)
-            mirrored, share = reflection(
-                lit, way, normal, facing, mirror, reaching, one - open_share
-            )
+            # Panes are flat: all of one would glint at once.
+            glint = reaching * select(surface == GLASS, like(mirror, f4(0.25)), one)
+            mirrored, share = reflection(lit, way, normal, facing, mirror, glint, one - open_share)
             # Clear coat is no perfect mirror, even at a grazing angle.
             coat = select(surface == PAINT, like(alpha, f4(0.85)), one)
             share *= select(surface == FACADE, one - alpha, coat)
