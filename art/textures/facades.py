@@ -149,7 +149,7 @@ def facade_highrise() -> Texture:
 def facade_old() -> Texture:
     """Return worn ochre render with iron balconies at every other bay."""
     rng = source("facade_old")
-    surface = _plain(rng, (206.0, 168.0, 118.0), 0.05)
+    surface = _plain(rng, (198.0, 172.0, 136.0), 0.05)
     bare = np.clip((fractal(rng, 1.2, longest=90.0) - 1.3) * 3, 0, 1)
     bricks = _bricks(rng, (164.0, 106.0, 80.0), (180.0, 156.0, 136.0))
     wall = Wall(mixed(surface, bricks, 0.8 * bare), rng)
@@ -189,7 +189,7 @@ def facade_bands() -> Texture:
 def facade_red_white() -> Texture:
     """Return red brick striped with white bands and corner stones."""
     rng = source("facade_red_white")
-    wall = Wall(_bricks(rng, (172.0, 70.0, 56.0), (196.0, 160.0, 146.0)), rng)
+    wall = Wall(_bricks(rng, (156.0, 80.0, 66.0), (196.0, 160.0, 146.0)), rng)
     for y in _STOREYS:
         wall.band(y, 7, (232.0, 226.0, 212.0))
     opening = Opening(17, 15, 47, 49, frame=_WHITE, upright=1, level=1, curtained=0.5)

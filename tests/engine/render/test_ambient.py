@@ -117,17 +117,20 @@ def test_walls_darken_towards_their_feet_and_roofs_stay_bright(drawn, renderer_o
     assert low < 0.9 * high
     lone = scene_of([block], [TOWER], size=1.0)  # no map reaches so far
     alone = drawn(renderer_of(lone, lighting=SHADE), looking(down[2:], pitch=np.pi / 2, fov=0.02))
-    assert roof == pytest.approx(int(alone.rgb[0, 48, 64].astype(int).sum()), rel=0.12)
+    assert roof == pytest.approx(int(alone.rgb[0, 48, 64].astype(int).sum()), abs=6)
 
 
-def test_ground_is_nowhere_alike_but_as_light_as_its_texture_on_average(drawn, renderer_of):
-    scene = scene_of([floor(60.0, "plain")], [GROUND], size=120.0)
-    picture = drawn(renderer_of(scene, lighting=SHADE), looking([(0.0, 0.0, 60.0)], pitch=1.57))
-    light = picture.rgb[0, ..., 1].astype(float)
-    assert 4 < light.std() < 25
-    still = drawn(renderer_of(scene_of([floor(60.0, "plain")], [GROUND], size=1.0), lighting=SHADE),
-                  looking([(0.0, 0.0, 60.0)], pitch=1.57))  # fmt: skip
-    assert light.mean() == pytest.approx(still.rgb[0, ..., 1].mean(), abs=5)
+def test_ground_with_roads_is_nowhere_alike_but_as_light_as_its_texture(drawn, renderer_of):
+    pictures = []
+    for kind in (ObjectClass.GROUND, ObjectClass.ROAD):
+        scene = scene_of([floor(60.0, "plain")], [GROUND], size=120.0)
+        scene.object_class[GROUND] = kind
+        above = looking([(0.0, 0.0, 60.0)], pitch=1.57)
+        picture = drawn(renderer_of(scene, lighting=SHADE), above)
+        pictures.append(picture.rgb[0, ..., 1].astype(float))
+    even, worn = pictures
+    assert even.std() < 2 < worn.std() < 25
+    assert worn.mean() == pytest.approx(even.mean(), abs=8)
 
 
 def test_light_on_a_roof_and_a_deck_follows_what_is_higher(drawn, renderer_of):
@@ -150,7 +153,7 @@ def test_light_on_a_roof_and_a_deck_follows_what_is_higher(drawn, renderer_of):
     assert foot < 0.95 * top
     below, beside = light(80.0, 0.0, 5.0), light(80.0, 60.0, 5.0)
     assert below < 0.9 * beside
-    assert light(80.0, 0.0, 20.0) == pytest.approx(light(10.0, 0.0, 60.0), rel=0.06)  # on the deck
+    assert light(80.0, 0.0, 20.0) == pytest.approx(light(10.0, 0.0, 60.0), abs=9)  # on the deck
 
 
 def test_a_hill_is_no_wall_and_what_stands_on_it_is_as_high_as_it_is():

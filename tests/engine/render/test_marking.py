@@ -56,5 +56,6 @@ def test_a_line_narrower_than_a_pixel_is_as_bright_wherever_it_lies_in_it(drawn,
         labelled.append((picture.object_id == LINE).sum())
         assert (picture.object_id == ROAD).any()
     # Bytes are no light: two grey pixels add up to more than a white one and a black one.
-    assert np.ptp(excess) < 0.2 * np.mean(excess)
+    # Nor is asphalt: what the line hides differs from place to place.
+    assert np.ptp(excess) < 0.3 * np.mean(excess)
     assert np.ptp(labelled) > 0.5 * np.mean(labelled)  # where only middles of pixels count

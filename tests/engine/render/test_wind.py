@@ -107,7 +107,7 @@ def test_the_wind_is_the_views_own_whatever_is_drawn_beside_it(drawn, grove):
 
 
 def test_rain_slants_with_the_wind(drawn, renderer_of):
-    grey = {"sun_colour": (0.0, 0.0, 0.0), "zenith_colour": (0.3, 0.3, 0.3)}
+    grey = {"sun_colour": (0.0, 0.0, 0.0), "zenith_colour": (0.9, 0.9, 0.9)}
     light = dataclasses.replace(WINDY, rain=0.8, **grey)
     renderer = renderer_of(city_scene(), lighting=light)
     views = in_wind(looking([(0.0, 0.0, 6.0)], fov=1.0), 0.0, 8.0, 3.0)

@@ -28,8 +28,9 @@ from eyas.maps.plan.plan import (
 MOUNTAINS = Horizon("farmland", height=0.075, ridges=1.0, woods=0.25)
 """What stands beyond the fields."""
 
-_MARGIN = 0.7  # Most by which a field's edge wanders [m]
-_VERGE = 1.4  # Width of the gravel and grass beside roads [m]
+_MARGIN, _CORNERS = 0.9, 10.0
+"""Most by which a field's edge wanders, and the distance between its corners [m]."""
+_VERGE = 1.2  # Width of the gravel and grass beside roads [m]
 _LIGHT = LampLight(axis=(0.7, 0.0, -1.0), intensity=45.0, cut_off=1.57)
 """The beams lean over the road, as in the original."""
 
@@ -43,7 +44,9 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     verge = shapely.buffer(roads, VERGE - 0.01)
     lots = lay_out(x, y, stream(seed, "farmland fields"))
     rng = stream(seed, "farmland margins")
-    areas = [snapped(wavy(shapely.difference(lot.area, verge), _MARGIN, rng)) for lot in lots]
+    areas = [
+        snapped(wavy(shapely.difference(lot.area, verge), _MARGIN, rng, _CORNERS)) for lot in lots
+    ]
     fields = [field(lot, area) for lot, area in zip(lots, areas, strict=True)]
     # Tan fields are harvested.
     harvested = [

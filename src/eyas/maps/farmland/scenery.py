@@ -18,8 +18,8 @@ from eyas.maps.plan.plan import Chance, Far, Field
 from eyas.maps.plants.gardens import scattered
 
 SOIL = material("soil", (1.0, 0.96, 0.90))
-_MEADOW = material("lawn", (0.98, 0.98, 0.92))
-BALK = replace(_MEADOW, surface=Surface.HILLSIDE)  # The ground between fields
+_MEADOW = material("lawn", (0.96, 0.92, 0.88))
+BALK = _MEADOW  # The ground between fields
 SHOULDER = replace(_MEADOW, surface=Surface.HILLSIDE_VERGE)
 _LAMPS_APART = 64.0
 """Along a road, from the first lamp of a link to the second, across the road [m]."""

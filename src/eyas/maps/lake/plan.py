@@ -47,7 +47,7 @@ _SHORE = replace(_SOIL, surface=Surface.HEATH_SHORE)
 # Lakes send back .02 to .06 of the light that enters them, most of it green; the sky is mirrored.
 _WATER = Material("water", (0.22, 0.31, 0.31), Surface.WATER)
 _LEAVES = material("dry_leaves")
-_KERB = material("stone", (1.0, 0.92, 0.85))
+_KERB = material("stone", (0.96, 0.94, 0.93))
 _APRON = material("concrete", (0.92, 0.90, 0.88))
 _KERB_WIDTH = 0.8
 _BEACH = 7.0  # Width of the shores [m]

@@ -35,9 +35,10 @@ def wavy(
     shape: shapely.Polygon,  # The shape, with a smooth outline [m]
     depth: float,  # Largest distance from the old outline [m]
     rng: np.random.Generator,
+    step: float = 5.0,  # Distance between the corners of the new one [m]
 ) -> shapely.Polygon:
     """Return a shape whose outline wanders to both sides."""
-    ring = shapely.get_coordinates(shapely.segmentize(shapely.get_exterior_ring(shape), 5.0))[:-1]
+    ring = shapely.get_coordinates(shapely.segmentize(shapely.get_exterior_ring(shape), step))[:-1]
     along = np.linspace(0.0, 2 * np.pi, len(ring), endpoint=False)
     phase, size = rng.uniform(0, 2 * np.pi, (6, 1)), rng.uniform(0.08, 0.25, (6, 1))
     rate = np.array([[3], [5], [8], [11], [17], [23]])

@@ -22,7 +22,7 @@ MARGIN_HEIGHT = 0.012
 
 WHITE = material("paint", (0.99, 0.99, 0.98))
 _WHITE_LINE = Material("asphalt_paint", (0.99, 0.985, 0.96), Surface.MARKING)
-_YELLOW_LINE = Material("asphalt_paint", (0.99, 0.77, 0.30), Surface.MARKING)
+_YELLOW_LINE = Material("asphalt_paint", (0.99, 0.77, 0.27), Surface.MARKING)
 
 
 @dataclass(frozen=True, slots=True)

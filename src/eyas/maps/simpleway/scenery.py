@@ -127,7 +127,7 @@ _SOIL = material("soil", (1.0, 0.92, 0.78))
 SKINS: dict[str, Skin] = {
     "grass": Skin(_LAWN, ((0.97, 0.93, 0.80), (0.84, 0.91, 0.83))),
     "village": Skin(
-        material("lawn", (0.62, 0.84, 0.90)),
+        material("lawn", (0.78, 0.90, 0.86)),
         horizon=Horizon("green", 0.07, 0.6, 1.0),
         winter=_GREY_SNOW,
     ),

@@ -16,7 +16,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.xz")
 
-SHA256 = "bc999fe8d50e2099135b2b0b9ac423995db10013385c01c3db67517c9aaef9d8"
+SHA256 = "43f5a38e42214d7da37b930a479e9e010f1cbf6fb984f62d946495d715ef2591"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 

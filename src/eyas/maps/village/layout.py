@@ -170,6 +170,9 @@ _RING, _RING_RADII = 33, (87.0, 144.0, 201.0)
 """Numbers of hills, and their smallest, median and largest radius [m]."""
 _STEEP, _RING_STEEP = (0.72, 0.86), (0.73, 0.84)
 """Least and largest height of a hill, as a share of its radius."""
+_SPURS, _LEAN = 0.28, 0.1
+"""Depth of the waves of a hill's outline, and most by which its summit is off its middle along an
+axis, as shares of its radius."""
 _KERB_TO_FOOT = 7.0  # Least distance from a kerb to the foot of a hill [m]
 _RING_GAPS = (14.0, 73.0)
 _LAKESIDE = "o14"  # Node of the outer road beside the lake's block
@@ -271,7 +274,15 @@ def _hills(
     made = place_inside(radii, _STEEP, room, rng)
     filled = shapely.Polygon(shapely.get_exterior_ring(shapely.get_parts(roads)[0]))
     ring = place_ring(sizes(_RING, _RING_RADII, rng).tolist(), _RING_GAPS, _RING_STEEP, filled, rng)
-    return [
-        replace(hill, phases=tuple(rng.uniform(0, 2 * math.pi, 3).tolist()), waviness=0.14)
-        for hill in (*made, *ring)
-    ]
+    shaped = []
+    for hill in (*made, *ring):  # with spurs and gullies, and steep on one side: no two are alike
+        phases, lean = rng.uniform(0, 2 * math.pi, 6), rounded(rng.uniform(-_LEAN, _LEAN, 2))
+        shaped.append(
+            replace(
+                hill,
+                phases=tuple(phases.tolist()),
+                waviness=_SPURS,
+                lean=(float(lean[0]), float(lean[1])),
+            )
+        )
+    return shaped

@@ -15,6 +15,7 @@ from eyas.engine.render.bake.tracks import blurred
 from eyas.engine.render.kernels.light.ambient import (
     DIRECTIONS,
     DISTANCES,
+    EVEN,
     OpennessBake,
     bake_openness,
 )
@@ -44,7 +45,7 @@ class AmbientMap:
     openness: NDArray[np.uint32]
     """First byte: share of the sky's light that arrives there, 0 to 255; second: where row + column
     is even, height of what hides the rest, else height of the roof, 0 on the ground [m above the
-    ground]; fourth: wear, see `WEAR`, 128 for none; shape (rows, columns)."""
+    ground]; fourth: wear, see `WEAR`, `EVEN` for none; shape (rows, columns)."""
     frame: NDArray[np.float64]  # West and south edge [m], texels per metre, z of the ground [m]
 
 
@@ -92,29 +93,28 @@ def _wear(
 ) -> NDArray[np.uint32]:
     """Return how much lighter the ground is than its texture, see `WEAR`, shape of `crowns`.
 
-    Lawns and fields vary most, by as much at 2 m as at 60 m. Roads and roofs vary less. Roads have
-    dust along their edges, where feet and wheels thin the grass. Below trees it is damp.
+    Lawns and fields vary most, by as much at 2 m as at 60 m; roads and roofs less, and so does
+    sand, which has waves of its own. Roads have dust along their edges, where feet and wheels thin
+    the grass. Below trees it is damp. Where no road is, nothing is worn.
     """
-    repeats = [-(-size // SIZE) for size in crowns.shape]
-    noise = np.tile(fractal(source("wear"), 0.85, longest=90.0), repeats)
-    noise = noise[: crowns.shape[0], : crowns.shape[1]]
-    picture, pen = _canvas(crowns.shape)
     mesh, kind = scene.static, scene.object_class[scene.static_object]
-    flat = (mesh.positions[mesh.triangles[kind == ObjectClass.ROAD], :2] - frame[:2]) * frame[2]
-    for corners in flat:
+    roads = mesh.positions[mesh.triangles[kind == ObjectClass.ROAD], :2]
+    if not len(roads):
+        return np.full(crowns.shape, EVEN, np.uint32)
+    picture, pen = _canvas(crowns.shape)
+    for corners in (roads - frame[:2]) * frame[2]:
         pen.polygon(corners.ravel().tolist(), fill=1.0)
     road = np.array(picture, np.float32)
     near = blurred(blurred(road, 2), 1)
     verge = 4.0 * near * (1.0 - near)  # 1 where a road ends
-    firm = np.maximum(road, solid > 0)
-    # Sand has waves of its own.
+    repeats = [-(-size // SIZE) for size in crowns.shape]
+    noise = np.tile(fractal(source("wear"), 0.85, longest=90.0), repeats)
+    noise = noise[: crowns.shape[0], : crowns.shape[1]]
     most = 22.0 if any(one.surface == Surface.DESERT for one in mesh.palette) else 40.0
-    light = (
-        (most - 0.55 * most * firm) * noise
-        + 14.0 * verge * (1.0 + 0.6 * noise)
-        - 16.0 * (crowns > 0)
-    )
-    return np.round(np.clip(128.0 + light, 0.0, 255.0)).astype(np.uint32)
+    light = most * (1.0 - 0.55 * np.maximum(road, solid > 0)) * noise
+    light += 14.0 * verge * (1.0 + 0.6 * noise) - 16.0 * (crowns > 0)
+    light[0, 0] = 0.0  # stands for all that lies beyond the map
+    return np.round(np.clip(EVEN + light, 0.0, 255.0)).astype(np.uint32)
 
 
 def openness_of(

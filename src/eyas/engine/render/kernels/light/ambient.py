@@ -22,8 +22,9 @@ STOREY = 2.0  # Roofs and ground that differ by less are one [m]
 BOUNCED = 0.42
 """Share of the sky's light that arrives by way of walls and ground where the sky is hidden."""
 
-WEAR = 200.0
-"""Steps of the byte that tells how much lighter the ground is than its texture, in all of that."""
+WEAR, EVEN = 200.0, 128
+"""Of the byte that says how much lighter the ground is than its texture: steps in the whole of
+that, and the value of ground that is as its texture."""
 
 _ASIDE = f4(0.9)  # Distance in front of a wall at which its light is looked up [m]
 
@@ -176,7 +177,7 @@ def openness(
     level: bool,  # Whether any of the points is ground or a roof; one answer for all lanes
 ) -> tuple[float, float]:
     """Return the share of the sky's light that reaches a point, 0 to 1, and by which share the
-    ground there is lighter than its texture.
+    ground there is lighter than its texture: as at the map's first texel beyond the map.
     """
     frame, shares = light.ambient_frame, light.ambient
     column = (x + _ASIDE * normal_x - frame.west) * frame.per_metre - f4(0.5)
@@ -205,8 +206,7 @@ def openness(
         share = select(inside, one - hidden * climb * climb, one)
     worn = like(x, zero)
     if level:
-        worn = f4(1.0 / WEAR) * (_blend(a, b, c, d, 24, across, down) - f4(128.0))
-        worn = select(inside, worn, zero)
+        worn = f4(1.0 / WEAR) * (_blend(a, b, c, d, 24, across, down) - f4(EVEN))
     return share, worn
 
 
