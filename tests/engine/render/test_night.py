@@ -173,7 +173,7 @@ def test_lamps_that_face_the_camera_have_halos_where_nothing_hides_them(drawn, r
 
 
 def test_a_street_lamp_blooms_only_by_night_and_a_wet_road_mirrors_rear_lamps(drawn, renderer_of):
-    black = {name: (0.0,) * 3 for name in ("zenith_colour", "horizon_colour", "fog_colour")}
+    black = dict.fromkeys(("zenith_colour", "horizon_colour", "fog_colour"), (0.0,) * 3)
     dark = dataclasses.replace(DARK, stars=0.0, **black)
     scene = scene_of([floor()], [0])
     scene.lamps = lamps_at([(20.0, 0.0)])
