@@ -273,6 +273,18 @@ def test_bytes_depend_on_nothing_but_the_tracker(size, mosaic):
         limit_threads(threads)
 
 
+def test_a_mosaic_of_high_gain_keeps_no_confetti():
+    dim = uniform(0.1, 1, 64, 64)
+    spread = []
+    for mosaic in ("none", "bilinear"):
+        rgb, _ = developed(dim, fixed(0.01, 3200.0), luminance=10.0, mosaic=mosaic)
+        colours = rgb[0].astype(float)
+        spread.append((np.ptp(colours, axis=2).mean(), colours.mean(axis=2).std()))
+    (confetti, grain), (left, kept) = spread
+    assert left < 0.35 * confetti
+    assert 0.3 * grain < kept < grain
+
+
 def test_malvar_and_bilinear_are_the_published_filters():
     light = np.random.default_rng(3).uniform(0.1, 0.5, (1, 3, 70, 41)).astype(np.float32)
     light = ndimage.gaussian_filter(light, (0, 0, 1, 1))

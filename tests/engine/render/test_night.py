@@ -172,6 +172,30 @@ def test_lamps_that_face_the_camera_have_halos_where_nothing_hides_them(drawn, r
     assert hidden <= 1
 
 
+def test_a_street_lamp_blooms_only_by_night_and_a_wet_road_mirrors_rear_lamps(drawn, renderer_of):
+    black = dict.fromkeys(("zenith_colour", "horizon_colour", "fog_colour"), (0.0,) * 3)
+    dark = dataclasses.replace(DARK, stars=0.0, **black)
+    scene = scene_of([floor()], [0])
+    scene.lamps = lamps_at([(20.0, 0.0)])
+    up = looking([(0.0, 0.0, HEIGHT)], pitch=-0.1, fov=0.6)
+    bloom = [
+        drawn(renderer_of(scene, lighting=light), up, size=(60, 80)).rgb[0, 38:46, 36:44].max()
+        for light in (dark, dataclasses.replace(dark, zenith_colour=(0.05,) * 3))
+    ]
+    assert bloom[0] > bloom[1] + 60
+    cars = DrawList.create(1, 6)
+    put_car(cars, 0, 0, 0, 0.0, 0.0, 0.0)
+    behind = looking([(-14.0, 0.0, 4.0)], pitch=0.35, fov=0.6)
+    dry, wet = (
+        drawn(renderer_of(scene_of([floor()], [0]), car_parts(), light), behind, cars, (90, 120))
+        for light in (dark, dataclasses.replace(dark, wet=1.0))
+    )
+    road = dry.object_id[0] == 0
+    more = (wet.rgb[0].astype(int) - dry.rgb[0])[road]
+    assert more[:, 0].max() > 20
+    assert more[:, 0].max() > 3 * more[:, 2].max()
+
+
 def test_light_of_cars_does_not_depend_on_where_a_picture_begins(drawn, renderer_of):
     """Eight samples are lit at once; none of them twice, wherever the first of them is."""
     cars = DrawList.create(1, 12)

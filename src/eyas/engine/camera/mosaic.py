@@ -117,45 +117,17 @@ def denoised(
     Colour is the mean over 5x5 photosites, and lost where that is hardly above the grain; half of
     the grain of their brightness stays.
     """
-    line = raw.shape[1]
-    at = (at_row + HALO) * line + MARGIN + column
-    same, beside = load(raw, at), load(raw, at - 1) + load(raw, at + 1)
-    same += load(raw, at - 2) + load(raw, at + 2)
-    above, corners = splat(f4(0.0)), splat(f4(0.0))
-    for step in (line, -line):
-        above += load(raw, at + step - 2) + load(raw, at + step) + load(raw, at + step + 2)
-        corners += load(raw, at + step - 1) + load(raw, at + step + 1)
-        far = at + 2 * step
-        same += load(raw, far - 2) + load(raw, far) + load(raw, far + 2)
-        beside += load(raw, far - 1) + load(raw, far + 1)
-    cross = f4(1.0 / 12.0) * (beside + above)
-    whole, beside, above = (
-        f4(1.0 / 13.0) * (same + corners),
-        f4(1.0 / 6.0) * beside,
-        f4(1.0 / 6.0) * above,
-    )
-    same, corners = f4(1.0 / 9.0) * same, f4(0.25) * corners
-    odd = ((lane_numbers() + i4(column)) & i4(1)) == i4(1)
-    if row & 1 == 0:
-        red, green, blue = (
-            select(odd, beside, same),
-            select(odd, whole, cross),
-            select(odd, above, corners),
-        )
-    else:
-        red, green, blue = (
-            select(odd, corners, above),
-            select(odd, cross, whole),
-            select(odd, same, beside),
-        )
-    mean = f4(0.25) * (red + blue) + f4(0.5) * green
+    red, green, blue = splat(f4(0.0)), splat(f4(0.0)), splat(f4(0.0))
+    for down in (-1, 1):
+        for across in (-1, 1):
+            each = demosaicked(raw, row + down, at_row + down, column + across, malvar=False)
+            red, green, blue = red + each[0], green + each[1], blue + each[2]
+    mean = f4(0.0625) * (red + blue) + f4(0.125) * green
     own = f4(0.25) * (colours[0] + colours[2]) + f4(0.5) * colours[1]
-    bright = mean + f4(0.5) * (own - mean)
-    lit = greater(mean, f4(0.0))
-    share = strength * lit / (lit + grain)
-    kept = f4(1.0) - strength
+    bright, lit = strength * f4(0.5) * (own + mean), greater(mean, f4(0.0))
+    share, kept = strength * lit / (lit + grain), f4(1.0) - strength
     return (
-        kept * colours[0] + strength * bright + share * (red - mean),
-        kept * colours[1] + strength * bright + share * (green - mean),
-        kept * colours[2] + strength * bright + share * (blue - mean),
+        kept * colours[0] + bright + share * (f4(0.25) * red - mean),
+        kept * colours[1] + bright + share * (f4(0.25) * green - mean),
+        kept * colours[2] + bright + share * (f4(0.25) * blue - mean),
     )
