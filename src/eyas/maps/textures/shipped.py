@@ -18,7 +18,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.zip")
 
-SHA256 = "8939ca18f6fd7d80055ceb81bcce6c48611f63551d33e0bb99ee90e56547f0cd"
+SHA256 = "f14dd7bc92511c47b9b5e946ef53e17cf83e194f9349ccb930b8654d4a74114c"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 
