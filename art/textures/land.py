@@ -24,10 +24,10 @@ def sand() -> Texture:
     # Steeper on the lee side, as in blown sand.
     ripple = exact.sin(phase + 0.5 * exact.sin(phase))
     strength = np.clip(0.6 + 0.3 * fractal(rng, 1.6, longest=90.0), 0.1, 1.0)
-    grain = 0.03 * white(rng) + 0.018 * fractal(rng, 0.8, longest=60.0)
-    picture = painted((214.0, 190.0, 148.0), 0.06 * ripple * strength + grain)
+    grain = 0.055 * white(rng) + 0.04 * fractal(rng, 0.8, longest=60.0)
+    picture = painted((214.0, 190.0, 148.0), 0.08 * ripple * strength + grain)
     pebble = rng.random(grain.shape)
-    made = opaque(mixed(picture, (150.0, 130.0, 104.0), 0.5 * (pebble > 0.996)))
+    made = opaque(mixed(picture, (150.0, 130.0, 104.0), 0.7 * (pebble > 0.994)))
     cloud = 0.5 + 0.21 * fractal(rng, 0.85, longest=70.0)
     made[..., 3] = np.round(255.0 * np.clip(cloud, 0.0, 1.0))
     return made

@@ -23,7 +23,7 @@ class Horizon:
 
 @dataclass(frozen=True, slots=True)
 class Lighting:
-    """Light and air of a weather. Colours: linear RGB radiance, about 1 for white paper in sun."""
+    """Light and air of a weather. Colours: linear radiance, about 1.3 for white paper in sun."""
 
     sun_direction: tuple[float, float, float]
     """Unit vector towards the sun."""
@@ -49,7 +49,7 @@ class Lighting:
     exposure: float = 1.0
     """Factor on all radiance before it is converted to a picture."""
     luminance: float = 30_000.0
-    """Luminance of radiance 1 [cd/m^2]: that of white paper in the sun by a clear day. What a
+    """Luminance of radiance 1 [cd/m^2]; white paper in the sun has 30,000 cd/m^2. What a
     camera model counts photons by; pictures without one do not depend on it."""
     snow: float = 0.0
     """Snow on surfaces that face up: 0 none, 1 fully covered."""

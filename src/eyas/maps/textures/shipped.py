@@ -16,7 +16,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.xz")
 
-SHA256 = "43f5a38e42214d7da37b930a479e9e010f1cbf6fb984f62d946495d715ef2591"
+SHA256 = "9192d095eaf274d90b0dc29c98b8fe22d706d0f9e968953f67366da04293b7ab"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 

@@ -188,7 +188,7 @@ def desert(look: Look, colour: Colour, point: Colour, rise: float) -> Colour:
     level = clip(f4(14.0) * (rise - f4(0.93)))
     bare = f4(2.8) * wide + f4(1.4) * patch
     stony = level * clip(f4(1.6) * (bare + f4(1.6) * ridge + f4(0.8) * grit))
-    light = one + (one - f4(0.75) * stony) * f4(1.15) * ridge + f4(0.2) * wide + f4(0.3) * grit
+    light = one + (one - f4(0.75) * stony) * f4(1.15) * ridge + f4(0.42) * wide + f4(0.5) * grit
     red, green, blue = light * colour[0], light * colour[1], light * colour[2]
     pebble = f4(0.85) + f4(1.5) * grit + f4(0.3) * patch
     gravel = (f4(0.215) * pebble, f4(0.178) * pebble, f4(0.140) * pebble)
@@ -196,7 +196,7 @@ def desert(look: Look, colour: Colour, point: Colour, rise: float) -> Colour:
     # Grass finds water at the edges of the stony flats.
     dry = level * clip(f4(4.2) * (f4(0.34) - magnitude(bare + f4(0.45))))
     tuft = f4(0.2) + f4(2.6) * grit + f4(1.0) * patch
-    blades = f4(0.9) + f4(0.9) * grit
+    blades = f4(0.8) + f4(1.1) * grit
     straw = (f4(0.140) * blades, f4(0.140) * blades, f4(0.066) * blades)
     return blended((red, green, blue), straw, f4(0.9) * dry * clip(tuft))
 
