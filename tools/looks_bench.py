@@ -3,6 +3,7 @@
 python tools/looks_bench.py --out build/looks --seed 7                   # ours alone, by day
 python tools/looks_bench.py --real FOLDER --detector "COMMAND" ...       # beside photographs
 python tools/looks_bench.py --weathers day night --before OLD/looks.json # what a change did
+python tools/write_docs.py                 # after `cp build/looks/looks.json bench/looks.json`
 
 Writes `looks.json`, `looks.md` (one page) and `looks.png` (a row of pictures for each map and
 weather; photographs on top) into the folder. FOLDER holds photographs from the air (JPEG, PNG) and,
@@ -25,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
+from eyas.engine.core.identity.build import this_build
 from eyas.engine.sim.assets import load_assets
 from eyas.engine.sim.still import StillWorld
 from eyas.engine.state.draw import Picture
@@ -328,13 +330,17 @@ def main() -> None:
             rows[name], pictures[name] = of_place(map_name, weather, asked.seed, asked.count)
             print(name, {key: round(value, 1) for key, value in rows[name].items()}, flush=True)
     sheet(pictures).save(asked.out / "looks.png")
-    found: dict[str, Any] = {"pictures": rows}
+    found: dict[str, Any] = {"build": this_build().world, "seed": asked.seed, "pictures": rows}
     if asked.detector:
         found["detectors"] = judged(asked)
     (asked.out / "looks.json").write_text(json.dumps(found, indent=1) + "\n")
     before = json.loads(asked.before.read_text()) if asked.before else {}
     page = [f"# Looks, seed {asked.seed}\n"]
-    page += [f"{table(of, before.get(kind, {}))}" for kind, of in found.items()]
+    page += [
+        table(found[kind], before.get(kind, {}))
+        for kind in ("pictures", "detectors")
+        if kind in found
+    ]
     (asked.out / "looks.md").write_text("\n".join([*page, "![pictures](looks.png)\n"]))
 
 

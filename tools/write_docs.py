@@ -10,6 +10,7 @@ import json
 import sys
 from pathlib import Path
 
+import looks_bench
 from plan_page import page_of_records, schema_text
 from standings import standings
 
@@ -53,6 +54,15 @@ def speed_table() -> str:
     return "\n".join([title, "", *rows])
 
 
+def looks_tables() -> str:
+    """Return what `tools/looks_bench.py` has measured."""
+    found = json.loads((DOCS.parent / "bench" / "looks.json").read_text())
+    title = f"Seed {found['seed']}, world `{found['build']}`:"
+    return "\n".join(
+        [title, "", *(looks_bench.table(found[kind], {}) for kind in ("pictures", "detectors"))]
+    )
+
+
 def made(page: str, table: str) -> str:
     """Return a page with its made part replaced."""
     head, rest = page.split(BEGIN)
@@ -64,9 +74,10 @@ def documents() -> dict[Path, str]:
     labels = DOCS / "labels.md"
     schema = json.dumps(label_schema(), indent=2, ensure_ascii=False) + "\n"
     plan, leaders = DOCS / "maps" / "plan.md", DOCS / "leaderboard.md"
-    speed = DOCS / "speed.md"
+    speed, looks = DOCS / "speed.md", DOCS / "looks.md"
     return {
         speed: made(speed.read_text(), speed_table()),
+        looks: made(looks.read_text(), looks_tables()),
         leaders: made(leaders.read_text(), standings()),
         labels: made(labels.read_text(), label_table()),
         DOCS / "labels.schema.json": schema,

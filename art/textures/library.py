@@ -128,7 +128,7 @@ _LIKE = dict.fromkeys(("asphalt_paint", "asphalt_lane", "asphalt_oil", "manhole"
 """Textures that lie in another's, and so are as much lighter or darker than painted as that is."""
 
 
-def _measured(name: str) -> NDArray[np.uint8]:
+def painted_texture(name: str) -> NDArray[np.uint8]:
     """Return a texture as light as `ALBEDO` says."""
     own, of = PAINTERS[name](), _LIKE.get(name, name)
     if of not in ALBEDO:
@@ -152,7 +152,7 @@ def painted_textures() -> dict[str, NDArray[np.uint8]]:
     the **top** of the tile, v = 1: code that samples with v upwards flips the rows. Alpha is 255
     except for the holes of `leaves`, the glass of facades, people and `cloth`, where it is 0.
     """
-    return {name: _measured(name) for name in TEXTURES}
+    return {name: painted_texture(name) for name in TEXTURES}
 
 
 def pack_textures() -> tuple[dict[Path, bytes], str]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from art.textures.library import PAINTERS, painted_textures
+from art.textures.library import PAINTERS, painted_texture, painted_textures
 from eyas.engine.world.build.materials import TEXTURES
 from eyas.maps.textures.shipped import build_textures
 
@@ -16,7 +16,7 @@ def test_each_texture_of_the_materials_has_a_painter():
 
 @pytest.mark.parametrize("name", FEW)
 def test_a_texture_is_what_its_painter_paints(name):
-    assert np.array_equal(build_textures()[name], PAINTERS[name]())
+    assert np.array_equal(build_textures()[name], painted_texture(name))
 
 
 @pytest.mark.slow
