@@ -262,7 +262,7 @@ def shade_point(
         )
     if worn_here:  # ground and roofs are nowhere alike, less so far away, where that would flicker
         close = lesser(greater(f4(2.0) - distance * pixel * lean, f4(0.4)), one)
-        worn *= close * normal[2]
+        worn *= close * select(normal[2] > f4(0.2), normal[2], zero)  # each lane by itself
         red *= one + f4(1.12) * worn
         green *= one + worn
         blue *= one + f4(0.85) * worn
