@@ -18,7 +18,7 @@ from eyas.engine.core.variation import Mirrored, Variation
 from eyas.engine.custom.config import CustomConfig
 from eyas.engine.sim.air_motion import air_motions
 from eyas.engine.sim.crowd import Crowd
-from eyas.engine.state.motion import SAMPLE, Motion, joined
+from eyas.engine.state.motion import FOOTING, SAMPLE, TRACK, Motion, SampledMotion, joined, packed
 from eyas.engine.state.scene import Scene
 from eyas.engine.targets.catalogue import MODELS, habit_of, kind_index, models_of
 from eyas.engine.targets.habit import Behaviour
@@ -66,7 +66,7 @@ def crowd_motions(
     ]
     if crowd.custom is not None:
         motions.insert(0, _custom(crowd, crowd.custom, around, ground()))
-    return motions
+    return [motion.packed() for motion in motions]
 
 
 def live_motions(crowd: Crowd, around: CrowdSurroundings) -> list[Motion]:
@@ -88,7 +88,7 @@ def with_crowd(
     first = 0 if around.vehicles is None else len(around.vehicles.kind)
     if motion is not None and around.vehicles is not None:
         driven = motion._replace(table=motion.table[:, :first], kind=motion.kind[:first])
-        around = around._replace(vehicles=around.vehicles._replace(motion=lambda: driven))
+        around = around._replace(vehicles=around.vehicles._replace(motion=driven.sampled))
     others = [] if crowd.custom is None else crowd_motions(crowd, around)
     others += _above(crowd, around)
     counts += [len(one.kind) for one in others]
@@ -103,7 +103,8 @@ def _above(crowd: Crowd, around: CrowdSurroundings) -> list[Motion]:
     """Return the motions of what flies."""
     scene, clock, seed, vehicles = around[:4]
     followed = vehicles.motion() if vehicles is not None and crowd.airborne.drones else None
-    return air_motions(crowd.airborne, scene, clock, seed, followed)
+    flying = air_motions(crowd.airborne, scene, clock, seed, followed)
+    return [motion.packed() for motion in flying]
 
 
 def _all_kept(
@@ -115,26 +116,26 @@ def _all_kept(
     reads little.
     """
     ground, vehicles = cache(partial(_ground, around, crowd.driven)), around.vehicles
-    parts: list[Callable[[], NDArray[np.float32]]] = [
-        partial(_numbers_of, group, number, around, ground) for number, group in enumerate(groups)
+    parts: list[Callable[[], NDArray[np.void]]] = [
+        partial(_samples_of, group, number, around, ground) for number, group in enumerate(groups)
     ]
     depends_on = [
         _depends_on(group, number, around, crowd.driven) for number, group in enumerate(groups)
     ]
     counts = [int(group.lifetimes.slot.max()) + 1 for group in groups]
     kind = np.repeat([kind_index(group.kind) for group in groups], counts).astype(np.int32)
-    inputs: tuple[object, ...] = (_numbers_of, *depends_on)
+    inputs: tuple[object, ...] = (_samples_of, *depends_on)
     if vehicles is not None:
         inputs, counts = (*inputs, vehicles.origin), [len(vehicles.kind), *counts]
         parts, kind = [partial(_driven, vehicles), *parts], np.concatenate([vehicles.kind, kind])
     make = partial(_side_by_side, parts, (around.clock.samples, sum(counts)))
-    numbers = cached(EntryKind.MOTION, make, inputs, of=NDArray[np.float32])
-    table = numbers.view(SAMPLE)[..., 0]
+    kept = cached(EntryKind.MOTION, make, inputs, of=_Numbers)
+    table, footing = kept.table.view(TRACK)[..., 0], kept.footing.view(FOOTING)[:, 0]
     lamps = np.zeros((0, 0), np.uint8)
     if vehicles is not None and vehicles.lamps.size:
         lamps = np.zeros(table.shape, np.uint8)
         lamps[:, : len(vehicles.kind)] = vehicles.lamps
-    return Motion(table, kind, around.clock.rate, 0.0, lamps), counts
+    return Motion(table, footing, kind, around.clock.rate, 0.0, lamps), counts
 
 
 def _ground(around: CrowdSurroundings, driven: bool) -> "WalkingGround":
@@ -144,21 +145,32 @@ def _ground(around: CrowdSurroundings, driven: bool) -> "WalkingGround":
     return WalkingGround(around.scene, roads=driven, lights=around.lights)
 
 
+class _Numbers(NamedTuple):
+    """Motion as it is kept."""
+
+    table: NDArray[np.uint32]
+    footing: NDArray[np.uint32]
+
+
 def _side_by_side(
-    parts: Sequence[Callable[[], NDArray[np.float32]]],
+    parts: Sequence[Callable[[], NDArray[np.void]]],
     shape: tuple[int, int],  # Of the whole: samples, actors
-) -> NDArray[np.float32]:
-    made, first = np.zeros((*shape, len(SAMPLE.names or ())), np.float32), 0
+) -> _Numbers:
+    made, footings, first, count = np.zeros(shape, TRACK), [], 0, 0
     for part in parts:  # one at a time in memory
-        numbers = part()
-        made[:, first : first + numbers.shape[1]] = numbers
-        first += numbers.shape[1]
-    return made
+        table, footing = packed(part())
+        table["footing"] += np.uint32(count)
+        made[:, first : first + table.shape[1]] = table
+        footings.append(footing)
+        first, count = first + table.shape[1], count + len(footing)
+    every = np.concatenate(footings)
+    return _Numbers(
+        made.view(np.uint32).reshape(*shape, -1), every.view(np.uint32).reshape(len(every), -1)
+    )
 
 
-def _driven(vehicles: Vehicles) -> NDArray[np.float32]:
-    table = vehicles.motion().table
-    return table.view(np.float32).reshape(*table.shape, -1)
+def _driven(vehicles: Vehicles) -> NDArray[np.void]:
+    return vehicles.motion().table
 
 
 def _kept(
@@ -167,28 +179,38 @@ def _kept(
     around: CrowdSurroundings,
     driven: bool,
     ground: Callable[[], "WalkingGround"],
-) -> Motion:
-    """Return the motion of a group, from the cache if it is there; see `_numbers_of`."""
+) -> SampledMotion:
+    """Return the motion of a group, from the cache if it is there; see `_samples_of`."""
     make = partial(_numbers_of, group, number, around, ground)
     inputs = _depends_on(group, number, around, driven)
     numbers = cached(EntryKind.MOTION, make, inputs, of=NDArray[np.float32])
     kind = np.full(numbers.shape[1], kind_index(group.kind), np.int32)
-    return Motion(numbers.view(SAMPLE)[..., 0], kind, around.clock.rate, 0.0)
+    return SampledMotion(numbers.view(SAMPLE)[..., 0], kind, around.clock.rate)
 
 
 def _numbers_of(
+    group: ScriptedGroup,
+    number: int,
+    around: CrowdSurroundings,
+    ground: Callable[[], "WalkingGround"],
+) -> NDArray[np.float32]:
+    """Return the numbers of `_samples_of`."""
+    table = _samples_of(group, number, around, ground)
+    return table.view(np.float32).reshape(*table.shape, -1)
+
+
+def _samples_of(
     group: ScriptedGroup,  # Who moves
     number: int,  # Which of the crowd's groups it is
     around: CrowdSurroundings,  # Where and when it moves
     ground: Callable[[], "WalkingGround"],  # Returns the ground
-) -> NDArray[np.float32]:
-    """Return the numbers of the samples of a group's motion."""
+) -> NDArray[np.void]:
+    """Return the samples of a group's motion."""
     from eyas.engine.behaviours.scripted import scripted_table  # with shapely
 
     rng = stream(around.seed, "crowd", number, zlib.crc32(group.kind.encode()))
     vehicles = None if around.vehicles is None else around.vehicles.motion()
-    table = scripted_table(ground(), group, around.clock, rng, vehicles)
-    return table.view(np.float32).reshape(*table.shape, -1)
+    return scripted_table(ground(), group, around.clock, rng, vehicles)
 
 
 def _depends_on(
@@ -239,7 +261,7 @@ def _refuse_crossing(crowd: Crowd) -> None:
 
 def _custom(
     crowd: Crowd, custom: CustomConfig, around: CrowdSurroundings, ground: "WalkingGround"
-) -> Motion:
+) -> SampledMotion:
     """Return the motion of a target of one's own; not kept, as its class may have changed."""
     from eyas.engine.custom.motion import Places, custom_motion  # with shapely
 
