@@ -18,7 +18,7 @@ from eyas.engine.core.variation import Mirrored, Variation
 from eyas.engine.custom.config import CustomConfig
 from eyas.engine.sim.air_motion import air_motions
 from eyas.engine.sim.crowd import Crowd
-from eyas.engine.state.motion import FOOTING, SAMPLE, TRACK, Motion, SampledMotion, joined, packed
+from eyas.engine.state.motion import FOOTING, TRACK, Motion, SampledMotion, joined, packed
 from eyas.engine.state.scene import Scene
 from eyas.engine.targets.catalogue import MODELS, habit_of, kind_index, models_of
 from eyas.engine.targets.habit import Behaviour
@@ -59,14 +59,12 @@ def crowd_motions(
     """
     if crowd.driven and around.vehicles is None:
         _refuse_crossing(crowd)
-    ground = cache(partial(_ground, around, crowd.driven))  # unneeded if all motions are kept
-    groups = _groups(crowd, around.clock)
-    motions = [
-        _kept(group, number, around, crowd.driven, ground) for number, group in enumerate(groups)
-    ]
+    made = []
     if crowd.custom is not None:
-        motions.insert(0, _custom(crowd, crowd.custom, around, ground()))
-    return [motion.packed() for motion in motions]
+        made.append(_custom(crowd, crowd.custom, around, _ground(around, crowd.driven)).packed())
+    if groups := _groups(crowd, around.clock):
+        made.append(_all_kept(groups, crowd, around, None))
+    return made
 
 
 def live_motions(crowd: Crowd, around: CrowdSurroundings) -> list[Motion]:
@@ -83,20 +81,22 @@ def with_crowd(
     Raises:
         SpawnError: The map has no room for all.
     """
+    vehicles, motions, count = around.vehicles, list[Motion](), 0
     groups = _groups(crowd, around.clock) if crowd.custom is None else []
-    motion, counts = _all_kept(groups, crowd, around) if groups or around.vehicles else (None, [])
-    first = 0 if around.vehicles is None else len(around.vehicles.kind)
-    if motion is not None and around.vehicles is not None:
-        driven = motion._replace(table=motion.table[:, :first], kind=motion.kind[:first])
-        around = around._replace(vehicles=around.vehicles._replace(motion=driven.sampled))
-    others = [] if crowd.custom is None else crowd_motions(crowd, around)
-    others += _above(crowd, around)
-    counts += [len(one.kind) for one in others]
-    followed = 0 if crowd.follows_vehicles or around.vehicles is None else 1
-    return (
-        joined([*([] if motion is None else [motion]), *others]),
-        np.repeat(np.arange(len(counts)) == followed, counts),
-    )
+    if groups or vehicles is not None:
+        motions.append(_all_kept(groups, crowd, around, vehicles))
+    if vehicles is not None:
+        (first, *_), count = motions, len(vehicles.kind)
+        driven = first._replace(table=first.table[:, :count], kind=vehicles.kind)
+        around = around._replace(vehicles=vehicles._replace(motion=driven.sampled))
+    if crowd.custom is not None:
+        motions += crowd_motions(crowd, around)
+    followed = count
+    if not crowd.follows_vehicles:
+        followed += _count(groups[0]) if groups else len(motions[min(count, 1)].kind)
+    motion = joined([*motions, *_above(crowd, around)])
+    actor = np.arange(len(motion.kind))
+    return motion, (actor < followed) & (crowd.follows_vehicles | (actor >= count))
 
 
 def _above(crowd: Crowd, around: CrowdSurroundings) -> list[Motion]:
@@ -108,34 +108,42 @@ def _above(crowd: Crowd, around: CrowdSurroundings) -> list[Motion]:
 
 
 def _all_kept(
-    groups: Sequence[ScriptedGroup], crowd: Crowd, around: CrowdSurroundings
-) -> tuple[Motion, list[int]]:
-    """Return the motion of vehicles and groups as one entry of the cache, and how many each are.
+    groups: Sequence[ScriptedGroup],
+    crowd: Crowd,
+    around: CrowdSurroundings,
+    vehicles: Vehicles | None,
+) -> Motion:
+    """Return the motion of vehicles and groups as one entry of the cache.
 
     Joined in memory, that of 400 people would take half a gigabyte of each process, of which it
     reads little.
     """
-    ground, vehicles = cache(partial(_ground, around, crowd.driven)), around.vehicles
+    ground = cache(partial(_ground, around, crowd.driven))
     parts: list[Callable[[], NDArray[np.void]]] = [
         partial(_samples_of, group, number, around, ground) for number, group in enumerate(groups)
     ]
     depends_on = [
         _depends_on(group, number, around, crowd.driven) for number, group in enumerate(groups)
     ]
-    counts = [int(group.lifetimes.slot.max()) + 1 for group in groups]
-    kind = np.repeat([kind_index(group.kind) for group in groups], counts).astype(np.int32)
+    indices = [kind_index(group.kind) for group in groups]
+    kind = np.repeat(indices, [*map(_count, groups)]).astype(np.int32)
     inputs: tuple[object, ...] = (_samples_of, *depends_on)
     if vehicles is not None:
-        inputs, counts = (*inputs, vehicles.origin), [len(vehicles.kind), *counts]
-        parts, kind = [partial(_driven, vehicles), *parts], np.concatenate([vehicles.kind, kind])
-    make = partial(_side_by_side, parts, (around.clock.samples, sum(counts)))
+        inputs, kind = (*inputs, vehicles.origin), np.concatenate([vehicles.kind, kind])
+        parts = [lambda: vehicles.motion().table, *parts]
+    make = partial(_side_by_side, parts, (around.clock.samples, len(kind)))
     kept = cached(EntryKind.MOTION, make, inputs, of=_Numbers)
     table, footing = kept.table.view(TRACK)[..., 0], kept.footing.view(FOOTING)[:, 0]
     lamps = np.zeros((0, 0), np.uint8)
     if vehicles is not None and vehicles.lamps.size:
         lamps = np.zeros(table.shape, np.uint8)
         lamps[:, : len(vehicles.kind)] = vehicles.lamps
-    return Motion(table, footing, kind, around.clock.rate, 0.0, lamps), counts
+    return Motion(table, footing, kind, around.clock.rate, 0.0, lamps)
+
+
+def _count(group: ScriptedGroup) -> int:
+    """Return how many a group are."""
+    return int(group.lifetimes.slot.max()) + 1
 
 
 def _ground(around: CrowdSurroundings, driven: bool) -> "WalkingGround":
@@ -156,47 +164,13 @@ def _side_by_side(
     parts: Sequence[Callable[[], NDArray[np.void]]],
     shape: tuple[int, int],  # Of the whole: samples, actors
 ) -> _Numbers:
-    made, footings, first, count = np.zeros(shape, TRACK), [], 0, 0
+    made, every, first = np.zeros(shape, TRACK), np.zeros(0, FOOTING), 0
     for part in parts:  # one at a time in memory
         table, footing = packed(part())
-        table["footing"] += np.uint32(count)
+        table["footing"] += np.uint32(len(every))
         made[:, first : first + table.shape[1]] = table
-        footings.append(footing)
-        first, count = first + table.shape[1], count + len(footing)
-    every = np.concatenate(footings)
-    return _Numbers(
-        made.view(np.uint32).reshape(*shape, -1), every.view(np.uint32).reshape(len(every), -1)
-    )
-
-
-def _driven(vehicles: Vehicles) -> NDArray[np.void]:
-    return vehicles.motion().table
-
-
-def _kept(
-    group: ScriptedGroup,
-    number: int,
-    around: CrowdSurroundings,
-    driven: bool,
-    ground: Callable[[], "WalkingGround"],
-) -> SampledMotion:
-    """Return the motion of a group, from the cache if it is there; see `_samples_of`."""
-    make = partial(_numbers_of, group, number, around, ground)
-    inputs = _depends_on(group, number, around, driven)
-    numbers = cached(EntryKind.MOTION, make, inputs, of=NDArray[np.float32])
-    kind = np.full(numbers.shape[1], kind_index(group.kind), np.int32)
-    return SampledMotion(numbers.view(SAMPLE)[..., 0], kind, around.clock.rate)
-
-
-def _numbers_of(
-    group: ScriptedGroup,
-    number: int,
-    around: CrowdSurroundings,
-    ground: Callable[[], "WalkingGround"],
-) -> NDArray[np.float32]:
-    """Return the numbers of `_samples_of`."""
-    table = _samples_of(group, number, around, ground)
-    return table.view(np.float32).reshape(*table.shape, -1)
+        every, first = np.concatenate([every, footing]), first + table.shape[1]
+    return _Numbers(made[..., None].view(np.uint32), every[:, None].view(np.uint32))
 
 
 def _samples_of(
@@ -216,7 +190,7 @@ def _samples_of(
 def _depends_on(
     group: ScriptedGroup, number: int, around: CrowdSurroundings, driven: bool
 ) -> tuple[object, ...]:
-    """Return what `_numbers_of` depends on; `driven`: whether vehicles drive there."""
+    """Return what `_samples_of` depends on; `driven`: whether vehicles drive there."""
     scene, clock, seed, vehicles, lights = around
     crosses = group.behaviour is Behaviour.CROSSING
     along = group.behaviour in (Behaviour.PAVEMENT, Behaviour.VERGE, Behaviour.RIDE)

@@ -7,23 +7,13 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-SAMPLE: Final = np.dtype(
-    [
-        ("x", np.float32),
-        ("y", np.float32),
-        ("z", np.float32),
-        ("velocity_x", np.float32),
-        ("velocity_y", np.float32),
-        ("velocity_z", np.float32),
-        ("yaw", np.float32),
-        ("yaw_rate", np.float32),
-        ("slope", np.float32),
-        ("hitch", np.float32),
-        ("travelled", np.float32),
-        ("present", np.float32),
-    ],
-    align=True,  # else kernels read each number byte by byte on CUDA
+_NUMBERS: Final = (
+    *("x", "y", "z", "velocity_x", "velocity_y", "velocity_z", "yaw", "yaw_rate", "slope"),
+    *("hitch", "travelled", "present"),
 )
+
+# Aligned, else kernels read each number byte by byte on CUDA.
+SAMPLE: Final = np.dtype([(name, np.float32) for name in _NUMBERS], align=True)
 """One actor at one instant, as motion is made.
 
 x, y, z: reference point on the road, world frame [m]; velocity_x, velocity_y, velocity_z: its
@@ -40,8 +30,6 @@ OFTEN: Final = ("x", "y", "velocity_x", "velocity_y", "yaw", "yaw_rate", "travel
 
 SELDOM: Final = ("z", "velocity_z", "slope", "hitch", "present")
 """What seldom changes, on flat ground hardly ever."""
-
-_PLACES: Final = {name: k for k, name in enumerate(SAMPLE.names or ())}
 
 TRACK: Final = np.dtype(
     [*((name, np.float32) for name in OFTEN), ("footing", np.uint32)], align=True
@@ -102,11 +90,11 @@ class SampledMotion(NamedTuple):
 
 def packed(samples: NDArray[np.void]) -> tuple[NDArray[np.void], NDArray[np.void]]:
     """Return `Motion.table` and `Motion.footing` of samples of dtype `SAMPLE`, shape (S, A)."""
-    whole = np.ascontiguousarray(samples).view(np.uint32).reshape(*samples.shape, len(_PLACES))
-    seldom, new = whole[..., [_PLACES[name] for name in SELDOM]], np.ones(samples.shape, np.bool_)
+    whole = np.ascontiguousarray(samples).view(np.uint32).reshape(*samples.shape, len(_NUMBERS))
+    seldom, new = whole[..., [*map(_NUMBERS.index, SELDOM)]], np.ones(samples.shape, np.bool_)
     new[1:] = (seldom[1:] != seldom[:-1]).any(axis=-1)
     table = np.empty((*samples.shape, len(OFTEN) + 1), np.uint32)
-    table[..., :-1] = whole[..., [_PLACES[name] for name in OFTEN]]
+    table[..., :-1] = whole[..., [*map(_NUMBERS.index, OFTEN)]]
     number = np.where(new, np.cumsum(new).reshape(new.shape) - 1, 0)
     table[..., -1] = np.maximum.accumulate(number, axis=0)
     return table.view(TRACK)[..., 0], np.ascontiguousarray(seldom[new]).view(FOOTING)[:, 0]
