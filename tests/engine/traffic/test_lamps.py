@@ -10,10 +10,11 @@ from eyas.engine.sim.scenes import load_network
 from eyas.engine.state.motion import SAMPLE, Lamp, SampledMotion, joined
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.traffic.lamps import BLINKS, LaneMap, lamps_of, shining
-from eyas.engine.traffic.recorded import recorded_motion
 from eyas.engine.traffic.recording_file import RecordingFile
 from eyas.lanes import exact, interpreted
 from eyas.maps.citystreet import CITYSTREET
+
+from ...kit.motions import recorded_motion
 
 RATE = 10.0
 

@@ -13,8 +13,9 @@ from eyas.engine.state.terrain import Terrain
 from eyas.engine.traffic.config import Demand, Mix, Source, TrafficConfig, VehicleType
 from eyas.engine.traffic.live import LiveSumo
 from eyas.engine.traffic.record import record, resolved
-from eyas.engine.traffic.recorded import recorded_motion
 from eyas.engine.traffic.sumo import SumoRun
+
+from ...kit.motions import recorded_motion
 
 pytestmark = [pytest.mark.sumo, pytest.mark.usefixtures("sumo")]
 

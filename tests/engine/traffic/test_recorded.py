@@ -11,9 +11,11 @@ from eyas.engine.state.terrain import Terrain
 from eyas.engine.traffic import recorded
 from eyas.engine.traffic.config import Demand
 from eyas.engine.traffic.interpolation import interpolate_actors
-from eyas.engine.traffic.recorded import recorded_motion, recorded_vehicles
+from eyas.engine.traffic.recorded import recorded_vehicles
 from eyas.engine.traffic.recording import TrafficRecording
 from eyas.engine.traffic.recording_file import RecordingFile, to_bytes
+
+from ...kit.motions import recorded_motion
 
 EAST, NORTH = 0.05, -0.02
 

@@ -94,13 +94,7 @@ def _phases(chain: Chain, habit: Habit) -> Floats:
 
 
 @compiled
-def _plan(
-    pieces: Floats,  # Spin, length, curvature
-    fastest: float,
-    gain: float,
-    turn: float,
-    phases: Floats,
-) -> None:
+def _plan(pieces: Floats, fastest: float, gain: float, turn: float, phases: Floats) -> None:
     spin, length, curvature = pieces[0], pieces[1], pieces[2]
     count, joint = len(length), phases[_DONE]  # speeds at the joints, one more than pieces
     top = phases[_START]  # the largest speed on each piece

@@ -154,7 +154,7 @@ def _ground(around: CrowdSurroundings, driven: bool) -> "WalkingGround":
 
 
 class _Numbers(NamedTuple):
-    """Motion as it is kept."""
+    """`Motion.table` and `Motion.footing` as they are kept."""
 
     table: NDArray[np.uint32]
     footing: NDArray[np.uint32]

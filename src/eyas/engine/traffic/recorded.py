@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import EntryKind
-from eyas.engine.state.motion import SAMPLE, Motion, SampledMotion
+from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.terrain import Terrain, relief_at, slope_at
 from eyas.engine.traffic.lamps import lamps_of
-from eyas.engine.traffic.recording import TrafficRecording
 from eyas.engine.traffic.recording_file import RecordingFile
 from eyas.engine.traffic.smoothing import Tracks, smooth
 from eyas.lanes import compiled
@@ -60,16 +59,6 @@ def _first(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) -> Sa
 def _lamps(motion: Callable[[], SampledMotion], network: RoadNetwork) -> NDArray[np.uint8]:
     made = motion()
     return lamps_of(made.table, made.rate, network)
-
-
-def recorded_motion(
-    recording: TrafficRecording,
-    terrain: Terrain,  # The ground; roads follow its relief
-    kind: NDArray[np.int32],  # Kind of each actor, see `Motion`, shape (A,)
-) -> Motion:
-    """Return the smoothed motion of a recording, on the ground of its map."""
-    assert kind.shape == (recording.actors,), f"kind: shape {kind.shape}"
-    return SampledMotion(table_of(smooth(recording), terrain), kind, float(recording.rate)).packed()
 
 
 def table_of(tracks: Tracks, terrain: Terrain) -> NDArray[np.void]:
