@@ -82,7 +82,7 @@ def _crowded(extras: list[dict[str, object]]) -> Callable[[], None]:
     for axis, middle in (("x", centre[0]), ("y", centre[1])):
         motion.table[axis] = middle + rng.uniform(-18.0, 18.0, count)
         motion.table[axis][:, target] = middle
-    motion.table["present"] = 1.0
+    motion.footing["present"] = 1.0
     camera = simulation.snapshot.cameras
     camera.position[0] = centre + np.array([0.0, 0.0, 50.0])
     camera.rotation[0] = np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0]], np.float64)

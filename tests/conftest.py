@@ -1,5 +1,6 @@
 """What all tests share: options, and no skipping where CI says so."""
 
+import gc
 import logging
 import os
 import re
@@ -44,6 +45,13 @@ settings.load_profile("eyas")
 
 def pytest_addoption(parser):
     parser.addoption("--regenerate", action="store_true", help="redraw the golden pictures")
+
+
+@pytest.fixture(autouse=True, scope="module")
+def memory_given_back():
+    """What a file has left in cycles, maps and networks among it, is gone before the next file."""
+    yield
+    gc.collect()
 
 
 HOUSES = {path.parent.name for path in Path(eyas.__file__).parent.glob("*/__init__.py")}

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from eyas.engine.sensors.obstacles import obstacles_of, solids_of
-from eyas.engine.state.motion import SAMPLE, Motion
+from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.state.scene import Colliders, ObjectClass, Scene
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.state.terrain import Terrain
@@ -52,7 +52,7 @@ def motion_of(*cars, hitch=0.0):
         table["velocity_y"][:, actor] = speed * np.sin(yaw)
         table["yaw"][:, actor], table["present"][:, actor] = yaw, 1.0
     table["hitch"] = hitch
-    return Motion(table, np.zeros(table.shape[1], np.int32), 10.0, 0.0)
+    return SampledMotion(table, np.zeros(table.shape[1], np.int32), 10.0).packed()
 
 
 def folded_truck():

@@ -48,7 +48,7 @@ from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.task.privileged import fill_privileged
-from eyas.engine.traffic.recorded import recorded_motion
+from eyas.engine.traffic.recorded import smooth, table_of
 from eyas.engine.traffic.recording_file import load
 from eyas.engine.world.maps import MAPS
 
@@ -113,7 +113,7 @@ FrameStack(1, (84, 84), Colours.GREY).add(picture.rgb, np.zeros(1, np.int64))
 StillWorld(load_assets(SimConfig().world, SimConfig().traffic)).actors(0.0)
 recording = load(MAPS.get("citystreet").shipped_traffic()[0])
 hill = Terrain(0.0, np.ones((2, 2), np.float32), 0.0, 0.0, 1.0)
-recorded_motion(recording, hill, np.zeros(recording.actors, np.int32))
+table_of(smooth(recording), hill)
 with tempfile.TemporaryDirectory() as folder:
     video = {"channels": 1, "total_time": 0.1, "flight": "orbit"}
     video["writers"] = ["png", "labels", "masks", "flow", "normals"]

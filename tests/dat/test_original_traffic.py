@@ -49,7 +49,7 @@ def test_the_manuals_example_runs_its_groups_without_sumo(caplog):
         "of which a world has 4"
     ]
     traffic = load_assets(config.world, config.traffic, 4).traffic
-    there = (traffic.motion.table["present"] > 0.0).sum(axis=1)
+    there = (traffic.motion.sampled().table["present"] > 0.0).sum(axis=1)
     assert there.mean() == pytest.approx(15.0, abs=0.1)
     targets = simulation.snapshot.targets.actor
     assert len(set(targets.tolist())) == 4

@@ -101,7 +101,7 @@ def lights(scene):
 @pytest.fixture(scope="module")
 def vehicles(scene):
     motion = load_assets(WorldConfig(map=NAME), TRAFFIC).traffic.motion
-    return motion._replace(table=motion.table[: TEN_MINUTES.samples])
+    return motion._replace(table=motion.table[: TEN_MINUTES.samples]).sampled()
 
 
 @pytest.fixture(scope="module")
@@ -294,6 +294,6 @@ def test_towns_without_pavements_or_crossings_say_so_in_a_line(writer, maps, tmp
 def test_extras_walk_with_the_lights_of_the_map(scene, lights):
     people = ExtraConfig(count=30, behaviour=Behaviour.CROSSING)
     motion = load_assets(WorldConfig(map=NAME), TRAFFIC, crowd=Crowd(extras=(people,))).traffic
-    entered, late, caught = broken(scene, lights, motion.motion.table[:, -30:])
+    entered, late, caught = broken(scene, lights, motion.motion.sampled().table[:, -30:])
     assert entered > 15
     assert (late, caught) == (0, 0)

@@ -50,7 +50,7 @@ def of_the_people():
     """The ways of pedestrians, and those of the vehicles that they let pass."""
     config = SimConfig()
     traffic = load_assets(config.world, config.traffic, 1, crowd_of(config)).traffic
-    table = traffic.motion.table
+    table = traffic.motion.sampled().table
     return [np.ascontiguousarray(table[name]) for name in table.dtype.names]
 
 

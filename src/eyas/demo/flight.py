@@ -19,7 +19,7 @@ from eyas.engine.sim.simulation import Simulation
 from eyas.engine.sim.still import StillWorld
 from eyas.engine.sim.worlds import together
 from eyas.engine.state.draw import Picture, Views
-from eyas.engine.state.motion import SAMPLE, Motion, joined
+from eyas.engine.state.motion import SAMPLE, Motion, SampledMotion, joined
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.catalogue import VEHICLE_KINDS, kind_index, models_of
 from eyas.engine.targets.rig import Rigs
@@ -56,7 +56,7 @@ def parked_car(assets: Assets, samples: int, rate: float) -> Motion | None:
     table["x"], table["y"], table["z"] = place
     table["yaw"] = _heading(assets, *place[:2])
     table["present"] = 1.0
-    return Motion(table, np.array([car], np.int32), rate, 0.0)
+    return SampledMotion(table, np.array([car], np.int32), rate).packed()
 
 
 def _free_place(assets: Assets) -> tuple[float, float, float] | None:

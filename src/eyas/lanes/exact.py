@@ -127,12 +127,8 @@ def dot(a: ArrayLike, b: ArrayLike) -> Any:  # noqa: ANN401  # a number or an ar
 
 
 def lengths(vectors: NDArray[Any]) -> NDArray[Any]:
-    """Return the lengths of vectors along the last axis of an array.
-
-    The bytes are those of `np.linalg.norm`, which takes four times as long.
-    """
-    lengths: NDArray[Any] = np.sqrt(dot(vectors, vectors))
-    return lengths
+    """Return the lengths along the last axis; `np.linalg.norm`, of the same bytes, is slower."""
+    return np.asarray(np.sqrt(dot(vectors, vectors)))
 
 
 def length(vector: ArrayLike) -> float:

@@ -5,7 +5,7 @@ import numpy as np
 from eyas.engine.behaviours.airborne import Space, chases, flocks
 from eyas.engine.behaviours.groups import SampleClock
 from eyas.engine.core.rng import stream
-from eyas.engine.state.motion import SAMPLE, Motion
+from eyas.engine.state.motion import SAMPLE, SampledMotion
 
 CLOCK = SampleClock(900, 10.0)
 EXTENT = np.array([600.0, 600.0])
@@ -54,7 +54,7 @@ def test_a_drone_follows_its_vehicle_from_above_while_that_is_there():
     for k in range(3):
         table["x"][:, k], table["y"][:, k], table["present"][:, k] = 9.0 * time, 20.0 * k, 1.0
     table["present"][300:, 1] = 0.0
-    vehicles = Motion(table, np.zeros(3, np.int32), 10.0, 0.0)
+    vehicles = SampledMotion(table, np.zeros(3, np.int32), 10.0)
     drones = chases(3, 7, vehicles, stream(1, "drones"))
     assert drones.kind.tolist() == [7, 7, 7]
     of = np.round(drones.table["y"][200] / 20.0).astype(int)

@@ -14,7 +14,7 @@ from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.scenes import load_scene
 from eyas.engine.sim.worlds import together
-from eyas.engine.state.motion import SAMPLE, Motion
+from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.catalogue import KINDS, MODELS, kind_index, models_of, sections_of
 from eyas.engine.targets.habit import Behaviour
@@ -36,14 +36,14 @@ def ground():
     return WalkingGround(load_scene("citystreet"), roads=True)
 
 
-def driven(traffic=None) -> Motion:
+def driven(traffic=None) -> SampledMotion:
     config = SimConfig(traffic=traffic or TrafficConfig())
     motion = load_assets(config.world, config.traffic).traffic.motion
-    return motion._replace(table=motion.table[: FIVE_MINUTES.samples])
+    return motion._replace(table=motion.table[: FIVE_MINUTES.samples]).sampled()
 
 
 @pytest.fixture(scope="module")
-def vehicles() -> Motion:
+def vehicles() -> SampledMotion:
     return driven()
 
 
@@ -142,11 +142,11 @@ def test_their_motion_is_continuous_and_the_same_again(ground, vehicles, table):
     assert walked(ground, vehicles).tobytes() == table.tobytes()
 
 
-def passing(x: np.ndarray, y: float = 0.0) -> Motion:
+def passing(x: np.ndarray, y: float = 0.0) -> SampledMotion:
     """One car along the x axis, ten samples a second."""
     table = np.zeros((len(x), 1), SAMPLE)
     table["x"][:, 0], table["y"], table["present"] = x, y, 1.0
-    return Motion(table, np.array([kind_index("passenger")], np.int32), 10.0, 0.0)
+    return SampledMotion(table, np.array([kind_index("passenger")], np.int32), 10.0)
 
 
 LINE = np.array([[0.0, -5.0], [0.0, 5.0]])
@@ -181,7 +181,7 @@ def test_nobody_crosses_behind_a_folded_truck_where_its_kingpin_is():
     table["x"], table["y"] = 0.5 * BUMPER_AHEAD + np.cos(yaw), -0.5 * TAIL_BEHIND + np.sin(yaw)
     table["yaw"], table["hitch"], table["present"] = yaw, 0.5 * np.pi, 1.0
     kind = np.array([kind_index("trailer")], np.int32)
-    gaps = GapAcceptance(Motion(table, kind, 10.0, 0.0), 2001, 10.0)
+    gaps = GapAcceptance(SampledMotion(table, kind, 10.0), 2001, 10.0)
 
     def free(x, y):
         return gaps.first(np.array([[x, y], [x + 0.5, y + 0.5]]), 3.0, 7.0) is not None

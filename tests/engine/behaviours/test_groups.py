@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.behaviours.groups import SampleClock, recycled
-from eyas.engine.state.motion import SAMPLE, Motion
+from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.targets.config import ObjectsConfig
 from eyas.engine.traffic.replay import Replay
 
@@ -24,7 +24,7 @@ def test_objects_are_recycled_but_stay_for_an_episode(staying):
     assert motion[6].sum() == 8
     table = np.zeros(motion.shape, SAMPLE)
     table["present"] = motion
-    replay = Replay(Motion(table, np.zeros(10, np.int32), 10.0, 0.0))
+    replay = Replay(SampledMotion(table, np.zeros(10, np.int32), 10.0).packed())
     lasts = [len(staying(replay, t, t + 3.0)) for t in np.linspace(2.0, 1200.0, 400)]
     assert min(lasts) >= 5
 
@@ -43,7 +43,7 @@ def test_nobody_is_moved_whom_a_tracker_must_follow(count, group, followers, epi
     table = np.zeros((clock.samples, count), SAMPLE)
     for slot, a, b in zip(*lifetimes, strict=True):
         table["present"][a : b + 1, slot] = 1
-    replay = Replay(Motion(table, np.zeros(count, np.int32), 10.0, 0.0))
+    replay = Replay(SampledMotion(table, np.zeros(count, np.int32), 10.0).packed())
     begins = np.arange(0.0, clock.samples / 10.0 - 1.0 - episode, 0.25)
     stay = [len(staying(replay, t, t + episode)) for t in begins.tolist()]
     assert min(stay) >= followers

@@ -11,7 +11,7 @@ from eyas.engine.behaviours.scripted import STROLL, waiting_spots
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.core.variation import Mirrored, Uniform
 from eyas.engine.sim.scenes import load_scene
-from eyas.engine.state.motion import ActorState, Motion
+from eyas.engine.state.motion import ActorState, SampledMotion
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.state.terrain import reliefs
 from eyas.engine.targets.catalogue import MODELS
@@ -128,7 +128,7 @@ def test_a_weave_swings(city_tables):
 def test_the_pose_between_samples_is_the_same_alone_and_among_other_times(city_tables):
     """Bit for bit: nothing is stepped."""
     table = city_tables["Pedestrian"]
-    replay = Replay(Motion(table, np.zeros(table.shape[1], np.int32), CLOCK.rate, 0.0))
+    replay = Replay(SampledMotion(table, np.zeros(table.shape[1], np.int32), CLOCK.rate).packed())
     times = np.linspace(0.0, 59.0, 300)
     every, one = ActorState.create(300, 8), ActorState.create(1, 8)
     replay.at(times, every)

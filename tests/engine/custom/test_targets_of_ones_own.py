@@ -85,10 +85,16 @@ def test_a_class_brings_its_parts_and_its_motion():
     assert simulation.traffic.actors == 3
     arm = picture.rgb[0][shown].astype(int)
     assert (arm[:, 0] > 1.5 * arm[:, 2]).any()  # yellow
-    table = begun(
-        custom={"path": "own_target:Sprinkler"}, objects={"max_count": 3}, world={"map": "farmland"}
-    ).traffic.motion.table
-    np.testing.assert_array_equal(table, simulation.traffic.motion.table)
+    table = (
+        begun(
+            custom={"path": "own_target:Sprinkler"},
+            objects={"max_count": 3},
+            world={"map": "farmland"},
+        )
+        .traffic.motion.sampled()
+        .table
+    )
+    np.testing.assert_array_equal(table, simulation.traffic.motion.sampled().table)
 
 
 @pytest.mark.slow
@@ -100,7 +106,7 @@ def test_a_trajectory_moves_any_body_and_begins_again():
     for body in ("Pedestrian", "bus"):
         simulation = begun(custom={**own_track.WALK, "body": body})
         assert seen(simulation)[0].kind == body
-        first, second = simulation.traffic.motion.table.T
+        first, second = simulation.traffic.motion.sampled().table.T
         np.testing.assert_allclose(first["x"][: last + 1 : 10], points["x"], atol=1e-3)
         assert (np.diff(first["travelled"][: last + 1]) >= 0.0).all()
         assert first["present"][last]
@@ -118,7 +124,7 @@ def test_a_pedestrian_who_crosses_roads_is_followed():
     simulation = begun(custom=crossing, objects=few, extras=cars)
     model, _, _ = seen(simulation)
     assert (model.kind, model.typename) == ("Pedestrian", "Pedestrian")
-    table = simulation.traffic.motion.table[:, 30:34]
+    table = simulation.traffic.motion.sampled().table[:, 30:34]
     speed = np.hypot(table["velocity_x"], table["velocity_y"])
     assert 1.05 < speed.max() < 1.61
     walking, on_road = table["present"] > 0.0, table["z"] < 0.05
@@ -313,7 +319,7 @@ def test_who_walks_by_a_trajectory_stands_on_pavements_and_lawns(tmp_path: Path)
         x, y, _ = corners[np.argmax(np.where(level, across[:, 2], 0.0))].mean(axis=0)
         track = tmp_path / f"{kind.name}.csv"
         track.write_text(f"t,x,y\n0,{x},{y}\n60,{x + 0.1},{y}\n")
-        table = begun(custom={"trajectory": str(track)}).traffic.motion.table
+        table = begun(custom={"trajectory": str(track)}).traffic.motion.sampled().table
         assert table["z"][0, 0] == pytest.approx(height, abs=0.02)
 
 
@@ -332,7 +338,8 @@ def test_a_trajectory_climbs_with_the_ground_or_as_it_says(tmp_path: Path):
         lines = [f"{t},{x + d},{y}" + f",{3 + 0.4 * t}" * heights for t, d in steps]
         track.write_text("t,x,y" + ",z" * heights + "\n" + "\n".join(lines))
         custom = {"trajectory": str(track), "body": "BB-8"}
-        row = begun(custom=custom, world={"map": "village"}).traffic.motion.table[10, 0]
+        motion = begun(custom=custom, world={"map": "village"}).traffic.motion
+        row = motion.sampled().table[10, 0]
         assert row["velocity_x"] == pytest.approx(0.3, abs=0.01)
         if heights:
             told = row["z"], row["velocity_z"], row["slope"]

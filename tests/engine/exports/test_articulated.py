@@ -31,7 +31,7 @@ def simulation():
 
 def bends(simulation, most) -> tuple[int, int]:
     """Return when, and which truck turns at a junction with the largest hitch up to a limit."""
-    motion = simulation.traffic.motion
+    motion = simulation.traffic.motion.sampled()
     hitch = np.abs(motion.table["hitch"]) * (motion.table["present"] > 0.0)
     hitch[: int(30 * motion.rate)] = hitch[-int(30 * motion.rate) :] = 0.0
     row, actor = np.unravel_index(np.where(hitch <= most, hitch, 0.0).argmax(), hitch.shape)
@@ -116,7 +116,7 @@ def test_everything_that_is_drawn_is_in_the_boxes(simulation, most):
 
 @pytest.mark.slow
 def test_the_box_of_a_straight_truck_is_as_large_as_it_is(simulation):
-    motion = simulation.traffic.motion
+    motion = simulation.traffic.motion.sampled()
     (actor, *_) = np.flatnonzero(motion.kind == kind_index("trailer")).tolist()
     rows = np.flatnonzero(
         (motion.table["hitch"][:, actor] == 0.0) & (motion.table["present"][:, actor] > 0.0)

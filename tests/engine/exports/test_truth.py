@@ -125,7 +125,7 @@ def seen_corners(frame: Frame, subject: Subject) -> tuple[np.ndarray, ...]:
 def test_a_target_that_is_not_there_is_in_no_picture():
     simulation = build_simulation(EyasConfig(**WORLDS["people"]), each_alone(1))
     simulation.reset()
-    present = simulation.traffic.motion.table["present"] > 0.0
+    present = simulation.traffic.motion.sampled().table["present"] > 0.0
     row, actor = np.argwhere(~present[:-1] & ~present[1:])[0].tolist()
     simulation.follow(0, actor)
     simulation.snapshot.targets.actor[0] = actor

@@ -26,13 +26,13 @@ def assets(config) -> Assets:
 def assets_where(assets):
     """Build the assets with 12 s of its traffic, in which vehicles are away at times [s]."""
     motion = assets.traffic.motion
-    table = motion.table[: 1 + round(12.0 * motion.rate)]
+    motion = motion._replace(table=motion.table[: 1 + round(12.0 * motion.rate)]).sampled()
 
     def build(*away: tuple[float, float]) -> Assets:
-        cut = table.copy()
+        cut = motion.table.copy()
         for leaves, comes_back in away:
             first, last = round(leaves * motion.rate) + 1, round(comes_back * motion.rate)
             cut["present"][first:last] = 0.0
-        return dataclasses.replace(assets, traffic=Replay(motion._replace(table=cut)))
+        return dataclasses.replace(assets, traffic=Replay(motion._replace(table=cut).packed()))
 
     return build

@@ -19,7 +19,7 @@ from eyas.engine.sim.crowd_motion import CrowdSurroundings, crowd_motions, with_
 from eyas.engine.sim.scenes import load_scene
 from eyas.engine.sim.worlds import each_alone, together
 from eyas.engine.state.draw import Picture
-from eyas.engine.state.motion import SAMPLE, Motion, joined
+from eyas.engine.state.motion import SAMPLE, SampledMotion, joined
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.catalogue import KINDS
 from eyas.engine.traffic.recorded import Vehicles
@@ -239,12 +239,12 @@ def test_a_crowd_beside_vehicles_is_kept_with_them_and_moves_as_alone():
     scene = load_scene("citystreet")
     table = np.zeros((101, 2), SAMPLE)
     table["x"], table["present"] = 5.0, 1.0
-    driven = Motion(table, np.zeros(2, np.int32), 10.0, 0.0)
+    driven = SampledMotion(table, np.zeros(2, np.int32), 10.0)
     vehicles = Vehicles(lambda: driven, driven.kind, driven.lamps, 101, 10.0, (table,))
     around = CrowdSurroundings(scene, SampleClock(101, 10.0), 3, vehicles)
     motion, targets = with_crowd(crowd, around)
-    in_memory = joined([driven, *crowd_motions(crowd, around)])
-    np.testing.assert_array_equal(motion.table, in_memory.table)
+    in_memory = joined([driven.packed(), *crowd_motions(crowd, around)])
+    np.testing.assert_array_equal(motion.sampled().table, in_memory.sampled().table)
     np.testing.assert_array_equal(motion.kind, in_memory.kind)
     assert motion.kind.dtype == in_memory.kind.dtype
     assert targets.tolist() == [True, True, *[False] * (len(motion.kind) - 2)]

@@ -96,7 +96,7 @@ def test_trackers_of_a_world_do_not_start_in_each_other():
     config, world_of = SimConfig(), together(3)
     assets, snapshot = assets_of(config, world_of), Snapshot.create(3)
     worlds = Worlds(config, assets, world_of)
-    present = np.flatnonzero(assets.traffic.motion.table["present"][60] > 0.0)
+    present = np.flatnonzero(assets.traffic.motion.sampled().table["present"][60] > 0.0)
     snapshot.targets.actor[:] = present[[0, 0, 1]]
     snapshot.episodes.tick[:] = 3000
     snapshot.episodes.start_offset[:, 2] = 200.0  # over everything

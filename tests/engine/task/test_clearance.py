@@ -5,7 +5,7 @@ import pytest
 
 from eyas.engine.sensors.grid import grid_of
 from eyas.engine.sensors.obstacles import Solids
-from eyas.engine.state.motion import SAMPLE, Motion
+from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.task.clearance import Clearance, Margin
 
@@ -28,7 +28,7 @@ def clearance() -> Clearance:
         grid=grid_of(bounds, top),
         ground=0,
     )
-    nobody = Motion(np.zeros((2, 0), SAMPLE), np.zeros(0, np.int32), 10.0, 0.0)
+    nobody = SampledMotion(np.zeros((2, 0), SAMPLE), np.zeros(0, np.int32), 10.0).packed()
     return Clearance(solids, Terrain.flat(0.0), nobody)
 
 

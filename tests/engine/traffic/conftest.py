@@ -9,9 +9,10 @@ from eyas.engine.state.motion import Motion
 from eyas.engine.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.traffic.config import TrafficConfig, VehicleType
-from eyas.engine.traffic.recorded import recorded_motion
 from eyas.engine.traffic.recording import Provenance, TrafficRecording
 from eyas.engine.traffic.sumo_install import import_libsumo
+
+from ...kit.motions import recorded_motion
 
 MakeRecording = Callable[..., TrafficRecording]
 

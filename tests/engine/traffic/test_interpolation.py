@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from eyas.engine.state.motion import SAMPLE, ActorState, Motion
+from eyas.engine.state.motion import SAMPLE, ActorState, Motion, SampledMotion
 from eyas.engine.traffic.interpolation import ActorPose, interpolate_actor, interpolate_actors
 from eyas.engine.traffic.smoothing import smooth
 
@@ -48,7 +48,7 @@ def test_every_number_is_the_samples_at_its_time():
     for sample in range(2):
         for k, name in enumerate(SAMPLE.names):
             table[name][sample, 1] = 100.0 * sample + k + 1.0
-    motion = Motion(table, np.zeros(2, np.int32), 2.0, 7.0)
+    motion = SampledMotion(table, np.zeros(2, np.int32), 2.0, 7.0).packed()
     for sample, time in enumerate((7.0, 7.5)):
         pose = interpolate_actor(motion, 1, time)
         speed = np.hypot(table["velocity_x"][sample, 1], table["velocity_y"][sample, 1])

@@ -7,13 +7,14 @@ import pytest
 
 from eyas.engine.render.kernels.surface.signalling import BRAKING, LEFT, RIGHT
 from eyas.engine.sim.scenes import load_network
-from eyas.engine.state.motion import SAMPLE, Lamp, Motion, joined
+from eyas.engine.state.motion import SAMPLE, Lamp, SampledMotion, joined
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.traffic.lamps import BLINKS, LaneMap, lamps_of, shining
-from eyas.engine.traffic.recorded import recorded_motion
 from eyas.engine.traffic.recording_file import RecordingFile
 from eyas.lanes import exact, interpreted
 from eyas.maps.citystreet import CITYSTREET
+
+from ...kit.motions import recorded_motion
 
 RATE = 10.0
 
@@ -31,7 +32,7 @@ def driven(network):
     for name in ("position", "yaw", "present"):
         setattr(recording, name, getattr(recording, name)[:1201])
     kind = np.zeros(recording.actors, np.int32)
-    motion = recorded_motion(recording, Terrain.flat(0.0), kind)
+    motion = recorded_motion(recording, Terrain.flat(0.0), kind).sampled()
     return motion, lamps_of(motion.table, motion.rate, network)
 
 
@@ -107,7 +108,8 @@ def test_drivers_signal_before_they_change_lanes(network):
 def test_indicators_blink_and_no_two_in_step():
     lamps = np.full((101, 2), Lamp.LEFT | Lamp.BRAKE, np.uint8)
     lamps[:, 1] = Lamp.RIGHT
-    motion = Motion(np.zeros(lamps.shape, SAMPLE), np.zeros(2, np.int32), RATE, 0.0, lamps)
+    whole = SampledMotion(np.zeros(lamps.shape, SAMPLE), np.zeros(2, np.int32), RATE, 0.0, lamps)
+    motion = whole.packed()
     at = interpreted(shining)
     times = np.arange(0.0, 10.0, 0.01)
     first = np.array([at(motion, 0, time) for time in times])
@@ -124,6 +126,6 @@ def test_indicators_blink_and_no_two_in_step():
 def test_who_is_no_vehicle_signals_nothing():
     table = np.zeros((3, 1), SAMPLE)
     kind = np.zeros(1, np.int32)
-    dark, lit = Motion(table, kind, RATE, 0.0), np.ones((3, 1), np.uint8)
+    dark, lit = SampledMotion(table, kind, RATE).packed(), np.ones((3, 1), np.uint8)
     assert joined([dark, dark]).lamps.size == 0
     assert joined([dark, dark._replace(lamps=lit)]).lamps.tolist() == [[0, 1]] * 3

@@ -7,14 +7,15 @@ import numpy as np
 import pytest
 
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.state.motion import ActorState, Lamp, Motion
+from eyas.engine.state.motion import SAMPLE, ActorState, Lamp, SampledMotion
 from eyas.engine.state.roads import RoadGraph
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.traffic.config import Demand, Mix, Source, TrafficConfig, VehicleType
 from eyas.engine.traffic.live import LiveSumo
 from eyas.engine.traffic.record import record, resolved
-from eyas.engine.traffic.recorded import recorded_motion
 from eyas.engine.traffic.sumo import SumoRun
+
+from ...kit.motions import recorded_motion
 
 pytestmark = [pytest.mark.sumo, pytest.mark.usefixtures("sumo")]
 
@@ -57,8 +58,8 @@ def test_live_tracks_are_those_of_a_recording(grid: RoadGraph, config: TrafficCo
             source.prepare(min(time, DURATION))
     finally:
         source.close()
-    expected = recorded_motion(recording, FLAT, source.motion.kind).table
-    table = source.motion.table
+    expected = recorded_motion(recording, FLAT, source.motion.kind).sampled().table
+    table = source.motion.sampled().table
     np.testing.assert_array_equal(table["present"], expected["present"])
     here = expected["present"] > 0.0
     assert 0.2 < here.mean()
@@ -117,7 +118,7 @@ def test_what_is_past_stays_and_what_is_too_late_is_refused(live: LiveSumo, stay
 def test_those_who_have_left_are_no_targets(grid: RoadGraph, staying):
     source = started(grid, GROUPS)
     try:
-        present = source.motion.table["present"] > 0.0
+        present = source.motion.sampled().table["present"] > 0.0
         known = round(source.stays().known * 10)
         assert known >= 10
         there = np.flatnonzero(present[: known + 1].all(axis=0))
@@ -129,10 +130,10 @@ def test_those_who_have_left_are_no_targets(grid: RoadGraph, staying):
 
 @pytest.mark.slow
 def test_others_share_a_live_world_but_are_no_targets(grid: RoadGraph, live: LiveSumo, staying):
-    table = np.zeros((601, 2), live.motion.table.dtype)
+    table = np.zeros((601, 2), SAMPLE)
     table["x"], table["present"] = 7.0, 1.0
     live.close()
-    walkers = Motion(table, np.array([9, 9], np.int32), 10.0, 0.0)
+    walkers = SampledMotion(table, np.array([9, 9], np.int32), 10.0).packed()
     config = resolved(KEPT, 1)
     source = LiveSumo(grid, config, FLAT, kind, DURATION, others=[walkers])
     try:
@@ -151,7 +152,7 @@ def test_there_is_one_live_world_in_a_process(grid: RoadGraph, live: LiveSumo):
     with pytest.raises(ConfigError, match="SUMO already runs in this process"):
         record("grid", 0, grid, KEPT, 1.0, 1)
     live.prepare(30.0)  # it drives on
-    assert live.motion.table["present"][300].all()
+    assert live.motion.sampled().table["present"][300].all()
 
 
 @pytest.mark.slow

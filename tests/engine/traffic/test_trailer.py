@@ -13,8 +13,9 @@ from eyas.engine.targets.rig import Rigs
 from eyas.engine.targets.vehicles.pose import VEHICLE_AHEAD
 from eyas.engine.traffic import trailer
 from eyas.engine.traffic.config import VehicleType
-from eyas.engine.traffic.recorded import recorded_motion
 from eyas.engine.traffic.trailer import Links, tow
+
+from ...kit.motions import recorded_motion
 
 RATE, SPEED, RADIUS = 50.0, 5.0, 12.0
 LENGTH = 16.5  # of SUMO's trailer
@@ -123,5 +124,5 @@ def test_recorded_trailers_swing(make_recording):
     truck = replace(
         recording, vehicle_types=(VehicleType.TRAILER,), vehicle_length=np.array([LENGTH])
     )
-    assert recorded_motion(truck, flat, kind).table["hitch"].min() < -0.3
-    assert not recorded_motion(recording, flat, kind).table["hitch"].any()
+    assert recorded_motion(truck, flat, kind).sampled().table["hitch"].min() < -0.3
+    assert not recorded_motion(recording, flat, kind).sampled().table["hitch"].any()

@@ -16,7 +16,7 @@ from eyas.engine.camera.config import CameraConfig, MountConfig
 from eyas.engine.sensors.mount import CARRIED, mount_of
 from eyas.engine.sim.step import Orders, StepState, StepSurroundings, step_of
 from eyas.engine.state.draw import Picture
-from eyas.engine.state.motion import SAMPLE, Motion
+from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.task.config import DoneConfig, RewardConfig
@@ -139,7 +139,7 @@ FLOWN, CAR, EQUIPPED = (
     ],
 )
 def test_the_step_compiles_for_cuda(tracker, mounted, kernel):
-    motion = Motion(np.zeros((2, 1), SAMPLE), np.zeros(1, np.int32), 10.0, 0.0)
+    motion = SampledMotion(np.zeros((2, 1), SAMPLE), np.zeros(1, np.int32), 10.0).packed()
     around = StepSurroundings(motion, Terrain.flat(0.0))
     rules = make_rules(RewardConfig(), DoneConfig(), CameraConfig())
     memory, mount = tracker.memory(2, Terrain.flat(0.0)), mount_of(MountConfig())

@@ -165,9 +165,10 @@ def world_of(config: EyasConfig) -> dict[str, str]:
     for array in arrays:
         hashes.add_array("scene", array)
     motion, walker = assets.traffic.motion, kind_index(TargetName.PEDESTRIAN.value)
+    whole = motion.sampled().table
     for name, chosen in (("people", motion.kind == walker), ("traffic", motion.kind != walker)):
-        for field in motion.table.dtype.names or ():
-            hashes.add_array(name, motion.table[field][:, chosen])
+        for field in whole.dtype.names or ():
+            hashes.add_array(name, whole[field][:, chosen])
     return hashes.told()
 
 

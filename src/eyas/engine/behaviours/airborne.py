@@ -12,7 +12,7 @@ from pydantic import Field
 
 from eyas.engine.behaviours.groups import SampleClock
 from eyas.engine.core.config import Config
-from eyas.engine.state.motion import SAMPLE, Motion
+from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.lanes import exact
 
 Floats = NDArray[np.float64]
@@ -99,7 +99,7 @@ def flocks(
     clock: SampleClock,  # The instants
     rng: np.random.Generator,  # Random numbers
     speed: float,  # [m/s]
-) -> Motion:
+) -> SampledMotion:
     """Return the motion of birds, or of drones that follow nobody, on closed ways."""
     time = np.arange(clock.samples) / clock.rate
     table = np.zeros((clock.samples, count), SAMPLE)
@@ -116,15 +116,15 @@ def flocks(
             place[:, axis] += reach * exact.sin(own * time + angle)
             velocity[:, axis] += reach * own * exact.cos(own * time + angle)
         _write(table[:, k], place, velocity, None, clock.rate)
-    return Motion(table, np.full(count, kind, np.int32), clock.rate, 0.0)
+    return SampledMotion(table, np.full(count, kind, np.int32), clock.rate, 0.0)
 
 
 def chases(
     count: int,  # Number of them; no more than vehicles
     kind: int,
-    vehicles: Motion,
+    vehicles: SampledMotion,
     rng: np.random.Generator,  # Random numbers
-) -> Motion:
+) -> SampledMotion:
     """Return the motion of drones that follow vehicles, each another one, from above."""
     table = np.zeros((len(vehicles.table), count), SAMPLE)
     chosen = rng.permutation(len(vehicles.kind))[:count]
@@ -140,7 +140,7 @@ def chases(
         _write(column, mean[:, :3], velocity, mean[:, 3], vehicles.rate)
         there = _averaged((way["present"] > 0.5).astype(np.float64)[:, None], lag, half)[:, 0]
         column["present"] = there > 1.0 - 1e-6
-    return Motion(table, np.full(count, kind, np.int32), vehicles.rate, vehicles.first_time)
+    return SampledMotion(table, np.full(count, kind, np.int32), vehicles.rate, vehicles.first_time)
 
 
 def _averaged(values: Floats, lag: int, half: int) -> Floats:

@@ -90,18 +90,6 @@ def headings(chain: Chain) -> Floats:
     return np.concatenate([yaw, yaw[-1:] + turned[-1:]])
 
 
-def poses_on(
-    chain: Chain,  # The path
-    piece: NDArray[np.int64],  # Index of the piece, shape (K,)
-    along: Floats,  # Walkway from its beginning [m], shape (K,)
-) -> Poses:
-    """Return poses on a path, after the spins of the pieces."""
-    at, bend = joints(chain), chain.curvature[piece]
-    yaw = at.yaw[piece]
-    dx, dy = _moved(yaw, along, bend)
-    return Poses(at.x[piece] + dx, at.y[piece] + dy, yaw + bend * along)
-
-
 def outline(chain: Chain) -> Floats:
     """Return points whose connecting lines stay within centimetres of a path, shape (K, 2) [m]."""
     turn = np.abs(chain.curvature * chain.length)
@@ -109,8 +97,9 @@ def outline(chain: Chain) -> Floats:
     piece = np.repeat(np.arange(len(count)), count)
     place = np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count)
     along = chain.length[piece] * place / count[piece]
-    poses, end = poses_on(chain, piece, along), joints(chain)
-    x, y = np.append(poses.x, end.x[-1]), np.append(poses.y, end.y[-1])
+    at = joints(chain)
+    dx, dy = _moved(at.yaw[piece], along, chain.curvature[piece])
+    x, y = np.append(at.x[piece] + dx, at.x[-1]), np.append(at.y[piece] + dy, at.y[-1])
     return np.column_stack([x, y])
 
 

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.state.motion import Motion
+from eyas.engine.state.motion import SampledMotion
 from eyas.engine.targets.catalogue import KINDS, MODELS, models_of, sections_of
 from eyas.engine.targets.kind import Section
 from eyas.engine.traffic.signals import Aspect, SignalPlan
@@ -34,7 +34,7 @@ class GapAcceptance:
 
     def __init__(
         self,
-        vehicles: Motion | None,  # The vehicles; None: there are none
+        vehicles: SampledMotion | None,  # The vehicles; None: there are none
         samples: int,  # Number of samples
         rate: float,  # Samples per second [Hz]
         # What crossings with lights show, see `walk_plan`; None: there are none
@@ -122,7 +122,7 @@ class _KindTracks(NamedTuple):
     reach: float  # How far from its reference point a vehicle reaches, at most [m]
 
 
-def _tracks_of(vehicles: Motion, kind: int, samples: int) -> _KindTracks:
+def _tracks_of(vehicles: SampledMotion, kind: int, samples: int) -> _KindTracks:
     rows, middle = vehicles.table[:samples, vehicles.kind == kind], KINDS[kind].ahead
     length, width = np.array([MODELS[model].size[:2] for model in models_of(kind)]).max(axis=0)
     x = np.where(rows["present"] > 0.0, rows["x"], np.float32(np.inf)).ravel()

@@ -26,7 +26,7 @@ from eyas.engine.behaviours.pavements import (
 from eyas.engine.behaviours.surface import WalkedSurface
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.core.variation import Variation, bounds, sample
-from eyas.engine.state.motion import Motion
+from eyas.engine.state.motion import SampledMotion
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.scene import Footways, Scene
 from eyas.engine.targets.catalogue import KINDS, MODELS, habit_of, models_of
@@ -67,7 +67,7 @@ def kerb_ways(
     surface: WalkedSurface,  # The ground
     radius: float,  # Distance to obstacles that is kept [m]
     # Those that may come over kerbs, as in narrow corners; None: there are none
-    vehicles: Motion | None = None,
+    vehicles: SampledMotion | None = None,
 ) -> list[Walkway]:
     """Return the ways along all kerbs with pavements, round what stands on these."""
     swept = shapely.STRtree(_swept(vehicles) if vehicles is not None else [])
@@ -121,7 +121,7 @@ def _walked(ring: shapely.LinearRing, place: _Place) -> tuple[NDArray[np.bool_],
     return raised & clear, is_hard(under.height) & clear
 
 
-def _swept(vehicles: Motion) -> NDArray[np.object_]:
+def _swept(vehicles: SampledMotion) -> NDArray[np.object_]:
     """Return where vehicles are, as boxes seen from above, each but once."""
     made = []
     for kind in np.unique(vehicles.kind).tolist():
@@ -298,7 +298,7 @@ def walkways(
     breadth: float,  # Diameter of the circle in which those fit who walk [m]
     bend: float,  # Radius at which they round corners [m]
     # Those that may come over kerbs in narrow corners; None: there are none
-    vehicles: Motion | None = None,
+    vehicles: SampledMotion | None = None,
     *,
     verges: bool = False,  # Whether one also walks along the edges of roads that have no pavement
     # Distances from the kerb, see `pavement_ways`; in towns whose kerbs are known, the usual ones

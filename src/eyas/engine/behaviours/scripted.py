@@ -26,7 +26,7 @@ from eyas.engine.behaviours.routes import (
 )
 from eyas.engine.behaviours.timetable import TimedMotion, ride, time_of
 from eyas.engine.core.errors import SpawnError
-from eyas.engine.state.motion import SAMPLE, Motion
+from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.state.scene import Scene
 from eyas.engine.state.terrain import reliefs
 from eyas.engine.targets.habit import Behaviour, Habit
@@ -136,7 +136,7 @@ def scripted_table(
     clock: SampleClock,  # Number of samples, and their rate
     rng: np.random.Generator,  # Random numbers
     # Motion, at the same instants, of the vehicles for which those wait who cross
-    vehicles: Motion | None = None,
+    vehicles: SampledMotion | None = None,
 ) -> NDArray[np.void]:
     """Return the samples of a group, of dtype `SAMPLE`, shape (samples, objects).
 
@@ -284,7 +284,7 @@ def _crossing_walks(
 
 
 def _walkways(
-    ground: WalkingGround, group: ScriptedGroup, habit: Habit, vehicles: Motion | None
+    ground: WalkingGround, group: ScriptedGroup, habit: Habit, vehicles: SampledMotion | None
 ) -> list[Walkway]:
     """Return the ways on pavements.
 

@@ -87,7 +87,7 @@ class WalkedSurface:
         """Return the pairs of points and triangles on which they lie; edges belong to both."""
         which, what = self._tree.query(shapely.points(points))
         found = np.empty(len(which), np.int8)
-        _test(points, self._corners, which, what, found)
+        _test(np.ascontiguousarray(points), self._corners, which, what, found)
         close = np.flatnonzero(found == _CLOSE)
         near = shapely.points(points[which[close]]), self._tree.geometries[what[close]]
         found[close] = shapely.intersects(*near)

@@ -40,7 +40,7 @@ def ride(
     # Phases that last no time are passed over, as the last of those that begin at once is found.
     phase = np.searchsorted(phases[_START], time, side="right") - 1
     pieces = np.stack([at.x[:-1], at.y[:-1], at.yaw[:-1], *chain[1:]])
-    _ride(phases, pieces, habit.yaw_rate, phase, time, made)
+    _ride(phases, pieces, float(habit.yaw_rate), phase, np.ascontiguousarray(time), made)
     return TimedMotion(Poses(*made[:3]), *made[3:])
 
 
@@ -88,21 +88,14 @@ def _phases(chain: Chain, habit: Habit) -> Floats:
     pieces, and the way until each [m], shape (5, 4 M).
     """
     phases = np.empty((5, _PHASES * len(chain.length)))
-    limits = habit.speed, habit.acceleration, habit.yaw_rate
-    _plan(chain.spin, chain.length, chain.curvature, *limits, phases)
+    limits = float(habit.speed), float(habit.acceleration), float(habit.yaw_rate)
+    _plan(np.stack(chain[1:]), *limits, phases)
     return phases
 
 
 @compiled
-def _plan(
-    spin: Floats,
-    length: Floats,
-    curvature: Floats,
-    fastest: float,
-    gain: float,
-    turn: float,
-    phases: Floats,
-) -> None:
+def _plan(pieces: Floats, fastest: float, gain: float, turn: float, phases: Floats) -> None:
+    spin, length, curvature = pieces[0], pieces[1], pieces[2]
     count, joint = len(length), phases[_DONE]  # speeds at the joints, one more than pieces
     top = phases[_START]  # the largest speed on each piece
     for i in range(count):

@@ -18,7 +18,7 @@ from eyas.engine.custom.problems import of_trajectory, worst
 from eyas.engine.custom.smoothing import smoothed
 from eyas.engine.custom.trajectory import read_trajectory
 from eyas.engine.custom.user_class import tracks_of
-from eyas.engine.state.motion import SAMPLE, Motion
+from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.state.terrain import reliefs
 from eyas.engine.targets.catalogue import MODELS, kind_index, models_of
 from eyas.engine.targets.habit import Habit
@@ -35,7 +35,7 @@ class Places(NamedTuple):
 
     lifetimes: Lifetimes
     offset: Variation
-    vehicles: Motion | None = None  # Vehicles for which those wait who cross roads
+    vehicles: SampledMotion | None = None  # Vehicles for which those wait who cross roads
 
 
 def custom_motion(
@@ -44,7 +44,7 @@ def custom_motion(
     ground: WalkingGround,  # The map
     clock: SampleClock,  # Number of samples, and their rate
     rng: np.random.Generator,  # Source of random numbers
-) -> Motion:
+) -> SampledMotion:
     """Return the motion of the user's targets.
 
     Raises:
@@ -61,7 +61,9 @@ def custom_motion(
     else:
         group = _group(config, name, places)
         table = scripted_table(ground, group, clock, rng, places.vehicles)
-    return Motion(table, np.full(table.shape[1], kind_index(name), np.int32), clock.rate, 0.0)
+    return SampledMotion(
+        table, np.full(table.shape[1], kind_index(name), np.int32), clock.rate, 0.0
+    )
 
 
 def _group(config: CustomConfig, name: str, places: Places) -> ScriptedGroup:

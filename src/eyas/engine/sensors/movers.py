@@ -33,7 +33,7 @@ def find_boxes(
         # Most are far away: a look at the last sample is a tenth of an interpolation.
         if abs(sample.x - place[0]) > far or abs(sample.y - place[1]) > far:
             continue
-        if abs(sample.z - place[2]) > far:
+        if abs(motion.footing[sample.footing].z - place[2]) > far:
             continue
         pose = interpolate_actor(motion, actor, time)
         if not pose.present:

@@ -11,7 +11,7 @@ from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.rng import stream
 from eyas.engine.render.bake.ambient import canopy_map, height_map
-from eyas.engine.state.motion import SAMPLE, Motion
+from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.state.scene import Scene
 from eyas.engine.state.terrain import reliefs
 from eyas.engine.targets.bird import BIRD
@@ -25,8 +25,12 @@ _BIRD_SPEED, _DRONE_SPEED = 11.0, 7.0
 
 
 def air_motions(
-    airborne: AirborneConfig, scene: Scene, clock: SampleClock, seed: int, vehicles: Motion | None
-) -> list[Motion]:
+    airborne: AirborneConfig,
+    scene: Scene,
+    clock: SampleClock,
+    seed: int,
+    vehicles: SampledMotion | None,
+) -> list[SampledMotion]:
     """Return the motions of birds and drones; none if there are none.
 
     Args:
@@ -54,7 +58,7 @@ def air_motions(
 
 def _circling(
     count: int, kind: int, scene: Scene, clock: SampleClock, seed: int, speed: float
-) -> Motion:
+) -> SampledMotion:
     """Return the motion of some of a kind on closed ways, kept in the cache."""
     make = partial(_numbers, count, kind, scene, clock, seed, speed)
     static, fixtures = scene.static, scene.fixtures
@@ -64,7 +68,7 @@ def _circling(
     )
     numbers = cached(EntryKind.MOTION, make, (_numbers, *inputs), of=NDArray[np.float32])
     kinds = np.full(count, kind, np.int32)
-    return Motion(numbers.view(SAMPLE)[..., 0], kinds, clock.rate, 0.0)
+    return SampledMotion(numbers.view(SAMPLE)[..., 0], kinds, clock.rate, 0.0)
 
 
 def _numbers(

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.engine.sensors.obstacles import Solids
 from eyas.engine.sim.scenes import load_network, load_scene, load_solids
-from eyas.engine.state.motion import SAMPLE, Motion
+from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.terrain import Terrain, reliefs
 from eyas.engine.task.clearance import Clearance
@@ -39,7 +39,7 @@ def cover_of(map_name: str, seed: int) -> Cover:
 
 def hidden_stretches(network: RoadNetwork, solids: Solids, terrain: Terrain) -> Cover:
     """Return the hidden stretches of lanes below solids that stand on a terrain."""
-    nobody = Motion(np.zeros((2, 0), SAMPLE), np.zeros(0, np.int32), 10.0, 0.0)
+    nobody = SampledMotion(np.zeros((2, 0), SAMPLE), np.zeros(0, np.int32), 10.0).packed()
     clearance = Clearance(solids, terrain, nobody)
     return tuple(
         stretch

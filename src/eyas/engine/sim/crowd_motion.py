@@ -18,7 +18,7 @@ from eyas.engine.core.variation import Mirrored, Variation
 from eyas.engine.custom.config import CustomConfig
 from eyas.engine.sim.air_motion import air_motions
 from eyas.engine.sim.crowd import Crowd
-from eyas.engine.state.motion import SAMPLE, Motion, joined
+from eyas.engine.state.motion import FOOTING, TRACK, Motion, SampledMotion, joined, packed
 from eyas.engine.state.scene import Scene
 from eyas.engine.targets.catalogue import MODELS, habit_of, kind_index, models_of
 from eyas.engine.targets.habit import Behaviour
@@ -59,14 +59,12 @@ def crowd_motions(
     """
     if crowd.driven and around.vehicles is None:
         _refuse_crossing(crowd)
-    ground = cache(partial(_ground, around, crowd.driven))  # unneeded if all motions are kept
-    groups = _groups(crowd, around.clock)
-    motions = [
-        _kept(group, number, around, crowd.driven, ground) for number, group in enumerate(groups)
-    ]
+    made = []
     if crowd.custom is not None:
-        motions.insert(0, _custom(crowd, crowd.custom, around, ground()))
-    return motions
+        made.append(_custom(crowd, crowd.custom, around, _ground(around, crowd.driven)).packed())
+    if groups := _groups(crowd, around.clock):
+        made.append(_all_kept(groups, crowd, around, None))
+    return made
 
 
 def live_motions(crowd: Crowd, around: CrowdSurroundings) -> list[Motion]:
@@ -83,58 +81,69 @@ def with_crowd(
     Raises:
         SpawnError: The map has no room for all.
     """
+    vehicles, motions, count = around.vehicles, list[Motion](), 0
     groups = _groups(crowd, around.clock) if crowd.custom is None else []
-    motion, counts = _all_kept(groups, crowd, around) if groups or around.vehicles else (None, [])
-    first = 0 if around.vehicles is None else len(around.vehicles.kind)
-    if motion is not None and around.vehicles is not None:
-        driven = motion._replace(table=motion.table[:, :first], kind=motion.kind[:first])
-        around = around._replace(vehicles=around.vehicles._replace(motion=lambda: driven))
-    others = [] if crowd.custom is None else crowd_motions(crowd, around)
-    others += _above(crowd, around)
-    counts += [len(one.kind) for one in others]
-    followed = 0 if crowd.follows_vehicles or around.vehicles is None else 1
-    return (
-        joined([*([] if motion is None else [motion]), *others]),
-        np.repeat(np.arange(len(counts)) == followed, counts),
-    )
+    if groups or vehicles is not None:
+        motions.append(_all_kept(groups, crowd, around, vehicles))
+    if vehicles is not None:
+        (first, *_), count = motions, len(vehicles.kind)
+        driven = first._replace(table=first.table[:, :count], kind=vehicles.kind)
+        around = around._replace(vehicles=vehicles._replace(motion=driven.sampled))
+    if crowd.custom is not None:
+        motions += crowd_motions(crowd, around)
+    followed = count
+    if not crowd.follows_vehicles:
+        followed += _count(groups[0]) if groups else len(motions[min(count, 1)].kind)
+    motion = joined([*motions, *_above(crowd, around)])
+    actor = np.arange(len(motion.kind))
+    return motion, (actor < followed) & (crowd.follows_vehicles | (actor >= count))
 
 
 def _above(crowd: Crowd, around: CrowdSurroundings) -> list[Motion]:
     """Return the motions of what flies."""
     scene, clock, seed, vehicles = around[:4]
     followed = vehicles.motion() if vehicles is not None and crowd.airborne.drones else None
-    return air_motions(crowd.airborne, scene, clock, seed, followed)
+    flying = air_motions(crowd.airborne, scene, clock, seed, followed)
+    return [motion.packed() for motion in flying]
 
 
 def _all_kept(
-    groups: Sequence[ScriptedGroup], crowd: Crowd, around: CrowdSurroundings
-) -> tuple[Motion, list[int]]:
-    """Return the motion of vehicles and groups as one entry of the cache, and how many each are.
+    groups: Sequence[ScriptedGroup],
+    crowd: Crowd,
+    around: CrowdSurroundings,
+    vehicles: Vehicles | None,
+) -> Motion:
+    """Return the motion of vehicles and groups as one entry of the cache.
 
     Joined in memory, that of 400 people would take half a gigabyte of each process, of which it
     reads little.
     """
-    ground, vehicles = cache(partial(_ground, around, crowd.driven)), around.vehicles
-    parts: list[Callable[[], NDArray[np.float32]]] = [
-        partial(_numbers_of, group, number, around, ground) for number, group in enumerate(groups)
+    ground = cache(partial(_ground, around, crowd.driven))
+    parts: list[Callable[[], NDArray[np.void]]] = [
+        partial(_samples_of, group, number, around, ground) for number, group in enumerate(groups)
     ]
     depends_on = [
         _depends_on(group, number, around, crowd.driven) for number, group in enumerate(groups)
     ]
-    counts = [int(group.lifetimes.slot.max()) + 1 for group in groups]
-    kind = np.repeat([kind_index(group.kind) for group in groups], counts).astype(np.int32)
-    inputs: tuple[object, ...] = (_numbers_of, *depends_on)
+    indices = [kind_index(group.kind) for group in groups]
+    kind = np.repeat(indices, [*map(_count, groups)]).astype(np.int32)
+    inputs: tuple[object, ...] = (_samples_of, *depends_on)
     if vehicles is not None:
-        inputs, counts = (*inputs, vehicles.origin), [len(vehicles.kind), *counts]
-        parts, kind = [partial(_driven, vehicles), *parts], np.concatenate([vehicles.kind, kind])
-    make = partial(_side_by_side, parts, (around.clock.samples, sum(counts)))
-    numbers = cached(EntryKind.MOTION, make, inputs, of=NDArray[np.float32])
-    table = numbers.view(SAMPLE)[..., 0]
+        inputs, kind = (*inputs, vehicles.origin), np.concatenate([vehicles.kind, kind])
+        parts = [lambda: vehicles.motion().table, *parts]
+    make = partial(_side_by_side, parts, (around.clock.samples, len(kind)))
+    kept = cached(EntryKind.MOTION, make, inputs, of=_Numbers)
+    table, footing = kept.table.view(TRACK)[..., 0], kept.footing.view(FOOTING)[:, 0]
     lamps = np.zeros((0, 0), np.uint8)
     if vehicles is not None and vehicles.lamps.size:
         lamps = np.zeros(table.shape, np.uint8)
         lamps[:, : len(vehicles.kind)] = vehicles.lamps
-    return Motion(table, kind, around.clock.rate, 0.0, lamps), counts
+    return Motion(table, footing, kind, around.clock.rate, 0.0, lamps)
+
+
+def _count(group: ScriptedGroup) -> int:
+    """Return how many a group are."""
+    return int(group.lifetimes.slot.max()) + 1
 
 
 def _ground(around: CrowdSurroundings, driven: bool) -> "WalkingGround":
@@ -144,57 +153,44 @@ def _ground(around: CrowdSurroundings, driven: bool) -> "WalkingGround":
     return WalkingGround(around.scene, roads=driven, lights=around.lights)
 
 
+class _Numbers(NamedTuple):
+    """`Motion.table` and `Motion.footing` as they are kept."""
+
+    table: NDArray[np.uint32]
+    footing: NDArray[np.uint32]
+
+
 def _side_by_side(
-    parts: Sequence[Callable[[], NDArray[np.float32]]],
+    parts: Sequence[Callable[[], NDArray[np.void]]],
     shape: tuple[int, int],  # Of the whole: samples, actors
-) -> NDArray[np.float32]:
-    made, first = np.zeros((*shape, len(SAMPLE.names or ())), np.float32), 0
+) -> _Numbers:
+    made, every, first = np.zeros(shape, TRACK), np.zeros(0, FOOTING), 0
     for part in parts:  # one at a time in memory
-        numbers = part()
-        made[:, first : first + numbers.shape[1]] = numbers
-        first += numbers.shape[1]
-    return made
+        table, footing = packed(part())
+        table["footing"] += np.uint32(len(every))
+        made[:, first : first + table.shape[1]] = table
+        every, first = np.concatenate([every, footing]), first + table.shape[1]
+    return _Numbers(made[..., None].view(np.uint32), every[:, None].view(np.uint32))
 
 
-def _driven(vehicles: Vehicles) -> NDArray[np.float32]:
-    table = vehicles.motion().table
-    return table.view(np.float32).reshape(*table.shape, -1)
-
-
-def _kept(
-    group: ScriptedGroup,
-    number: int,
-    around: CrowdSurroundings,
-    driven: bool,
-    ground: Callable[[], "WalkingGround"],
-) -> Motion:
-    """Return the motion of a group, from the cache if it is there; see `_numbers_of`."""
-    make = partial(_numbers_of, group, number, around, ground)
-    inputs = _depends_on(group, number, around, driven)
-    numbers = cached(EntryKind.MOTION, make, inputs, of=NDArray[np.float32])
-    kind = np.full(numbers.shape[1], kind_index(group.kind), np.int32)
-    return Motion(numbers.view(SAMPLE)[..., 0], kind, around.clock.rate, 0.0)
-
-
-def _numbers_of(
+def _samples_of(
     group: ScriptedGroup,  # Who moves
     number: int,  # Which of the crowd's groups it is
     around: CrowdSurroundings,  # Where and when it moves
     ground: Callable[[], "WalkingGround"],  # Returns the ground
-) -> NDArray[np.float32]:
-    """Return the numbers of the samples of a group's motion."""
+) -> NDArray[np.void]:
+    """Return the samples of a group's motion."""
     from eyas.engine.behaviours.scripted import scripted_table  # with shapely
 
     rng = stream(around.seed, "crowd", number, zlib.crc32(group.kind.encode()))
     vehicles = None if around.vehicles is None else around.vehicles.motion()
-    table = scripted_table(ground(), group, around.clock, rng, vehicles)
-    return table.view(np.float32).reshape(*table.shape, -1)
+    return scripted_table(ground(), group, around.clock, rng, vehicles)
 
 
 def _depends_on(
     group: ScriptedGroup, number: int, around: CrowdSurroundings, driven: bool
 ) -> tuple[object, ...]:
-    """Return what `_numbers_of` depends on; `driven`: whether vehicles drive there."""
+    """Return what `_samples_of` depends on; `driven`: whether vehicles drive there."""
     scene, clock, seed, vehicles, lights = around
     crosses = group.behaviour is Behaviour.CROSSING
     along = group.behaviour in (Behaviour.PAVEMENT, Behaviour.VERGE, Behaviour.RIDE)
@@ -239,7 +235,7 @@ def _refuse_crossing(crowd: Crowd) -> None:
 
 def _custom(
     crowd: Crowd, custom: CustomConfig, around: CrowdSurroundings, ground: "WalkingGround"
-) -> Motion:
+) -> SampledMotion:
     """Return the motion of a target of one's own; not kept, as its class may have changed."""
     from eyas.engine.custom.motion import Places, custom_motion  # with shapely
 

@@ -7,24 +7,14 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-SAMPLE: Final = np.dtype(
-    [
-        ("x", np.float32),
-        ("y", np.float32),
-        ("z", np.float32),
-        ("velocity_x", np.float32),
-        ("velocity_y", np.float32),
-        ("velocity_z", np.float32),
-        ("yaw", np.float32),
-        ("yaw_rate", np.float32),
-        ("slope", np.float32),
-        ("hitch", np.float32),
-        ("travelled", np.float32),
-        ("present", np.float32),
-    ],
-    align=True,  # else kernels read each number byte by byte on CUDA
+_NUMBERS: Final = (
+    *("x", "y", "z", "velocity_x", "velocity_y", "velocity_z", "yaw", "yaw_rate", "slope"),
+    *("hitch", "travelled", "present"),
 )
-"""One actor at one instant.
+
+# Aligned, else kernels read each number byte by byte on CUDA.
+SAMPLE: Final = np.dtype([(name, np.float32) for name in _NUMBERS], align=True)
+"""One actor at one instant, as motion is made.
 
 x, y, z: reference point on the road, world frame [m]; velocity_x, velocity_y, velocity_z: its
 velocity [m/s]; yaw: heading, counter-clockwise from east, without jumps at ±180° [rad]; yaw_rate
@@ -34,6 +24,20 @@ sample [m]; present: 1 while the actor is in the world, else 0.
 
 32 bits keep positions to 0.03 mm and halve the memory that each world's step touches.
 """
+
+OFTEN: Final = ("x", "y", "velocity_x", "velocity_y", "yaw", "yaw_rate", "travelled")
+"""What of `SAMPLE` always changes."""
+
+SELDOM: Final = ("z", "velocity_z", "slope", "hitch", "present")
+"""What seldom changes, on flat ground hardly ever."""
+
+TRACK: Final = np.dtype(
+    [*((name, np.float32) for name in OFTEN), ("footing", np.uint32)], align=True
+)
+"""One actor at one instant, as motion is kept and read: what always changes, and the row of
+`Motion.footing` that holds the rest. Two fill a line of a cache."""
+
+FOOTING: Final = np.dtype([(name, np.float32) for name in SELDOM], align=True)
 
 
 class Lamp(IntFlag):
@@ -50,7 +54,8 @@ _DARK: Final = np.zeros((0, 0), np.uint8)  # Lamps of actors that have none
 class Motion(NamedTuple):
     """Sampled motion of A actors, interpolated by kernels (`eyas.engine.traffic.interpolation`)."""
 
-    table: NDArray[np.void]  # Samples of dtype `SAMPLE`, shape (S, A), S at least 2
+    table: NDArray[np.void]  # Samples of dtype `TRACK`, shape (S, A), S at least 2
+    footing: NDArray[np.void]  # Of dtype `FOOTING`, shape (F,)
     kind: NDArray[np.int32]
     """Kind of each actor: index into `eyas.engine.targets.catalogue.KINDS`, shape (A,)."""
     rate: float  # Samples per second [Hz]
@@ -58,6 +63,41 @@ class Motion(NamedTuple):
     """Time of sample 0 [s]; 0 for a recording, later for traffic that is simulated live."""
     lamps: NDArray[np.uint8] = _DARK
     """`Lamp` of each actor at each sample, shape (S, A), or (0, 0) where nobody signals."""
+
+    def sampled(self) -> "SampledMotion":
+        """Return the same with whole samples."""
+        made = np.zeros(self.table.shape, SAMPLE)
+        for name in OFTEN:
+            made[name] = self.table[name]
+        for name in SELDOM:
+            made[name] = self.footing[name][self.table["footing"]]
+        return SampledMotion(made, *self[2:])
+
+
+class SampledMotion(NamedTuple):
+    """Motion as it is made; see `Motion`."""
+
+    table: NDArray[np.void]  # Samples of dtype `SAMPLE`, shape (S, A)
+    kind: NDArray[np.int32]
+    rate: float
+    first_time: float = 0.0
+    lamps: NDArray[np.uint8] = _DARK
+
+    def packed(self) -> Motion:
+        """Return the same for kernels."""
+        return Motion(*packed(self.table), self.kind, self.rate, self.first_time, self.lamps)
+
+
+def packed(samples: NDArray[np.void]) -> tuple[NDArray[np.void], NDArray[np.void]]:
+    """Return `Motion.table` and `Motion.footing` of samples of dtype `SAMPLE`, shape (S, A)."""
+    whole = np.ascontiguousarray(samples).view(np.uint32).reshape(*samples.shape, len(_NUMBERS))
+    seldom, new = whole[..., [*map(_NUMBERS.index, SELDOM)]], np.ones(samples.shape, np.bool_)
+    new[1:] = (seldom[1:] != seldom[:-1]).any(axis=-1)
+    table = np.empty((*samples.shape, len(OFTEN) + 1), np.uint32)
+    table[..., :-1] = whole[..., [*map(_NUMBERS.index, OFTEN)]]
+    number = np.where(new, np.cumsum(new).reshape(new.shape) - 1, 0)
+    table[..., -1] = np.maximum.accumulate(number, axis=0)
+    return table.view(TRACK)[..., 0], np.ascontiguousarray(seldom[new]).view(FOOTING)[:, 0]
 
 
 class ActorState(NamedTuple):
@@ -134,8 +174,14 @@ def joined(motions: Sequence[Motion]) -> Motion:
             for motion in motions
         ]
         lamps = np.concatenate(own, axis=1)
+    table = np.concatenate([motion.table for motion in motions], axis=1)
+    counts = [len(motion.footing) for motion in motions]
+    table["footing"] += np.repeat(
+        np.cumsum(counts) - counts, [len(m.kind) for m in motions]
+    ).astype(np.uint32)
     return Motion(
-        table=np.concatenate([motion.table for motion in motions], axis=1),
+        table=table,
+        footing=np.concatenate([motion.footing for motion in motions]),
         kind=np.concatenate([motion.kind for motion in motions]),
         rate=first.rate,
         first_time=first.first_time,

@@ -53,18 +53,19 @@ def interpolate_actor(
     f = _place(motion, time) - row
     a = motion.table[row, actor]
     b = motion.table[row + 1, actor]
+    on_a, on_b = motion.footing[a.footing], motion.footing[b.footing]
     step = 1.0 / motion.rate
     x, speed_x = _hermite(a.x, b.x, a.velocity_x, b.velocity_x, step, f)
     y, speed_y = _hermite(a.y, b.y, a.velocity_y, b.velocity_y, step, f)
-    z, climb = _hermite(a.z, b.z, a.velocity_z, b.velocity_z, step, f)
+    z, climb = _hermite(on_a.z, on_b.z, on_a.velocity_z, on_b.velocity_z, step, f)
     yaw, yaw_rate = _hermite(a.yaw, b.yaw, a.yaw_rate, b.yaw_rate, step, f)
     speed_a = hypot(a.velocity_x, a.velocity_y)
     speed_b = hypot(b.velocity_x, b.velocity_y)
     travelled, _ = _hermite(a.travelled, b.travelled, speed_a, speed_b, step, f)
-    slope = a.slope + f * (b.slope - a.slope)
-    hitch = a.hitch + f * (b.hitch - a.hitch)
+    slope = on_a.slope + f * (on_b.slope - on_a.slope)
+    hitch = on_a.hitch + f * (on_b.hitch - on_a.hitch)
     speed = hypot(speed_x, speed_y)
-    present = (a.present > 0.0 or f == 1.0) and (b.present > 0.0 or f == 0.0)
+    present = (on_a.present > 0.0 or f == 1.0) and (on_b.present > 0.0 or f == 0.0)
     velocity = (speed_x, speed_y, climb)
     return ActorPose(x, y, z, yaw, slope, speed, *velocity, yaw_rate, hitch, travelled, present)
 

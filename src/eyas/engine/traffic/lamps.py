@@ -145,7 +145,7 @@ def shining(motion: Motion, actor: int, time: float) -> int:
 
 
 def lamps_of(
-    table: NDArray[np.void],  # Their `Motion.table`, shape (S, A)
+    table: NDArray[np.void],  # Their samples, shape (S, A)
     rate: float,  # Its samples per second [Hz]
     network: RoadNetwork,  # The roads that they drive on
 ) -> NDArray[np.uint8]:

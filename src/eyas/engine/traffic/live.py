@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.state.motion import SAMPLE, ActorState, Motion, joined
+from eyas.engine.state.motion import FOOTING, OFTEN, SELDOM, TRACK, ActorState, Motion, joined
 from eyas.engine.state.roads import RoadGraph
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.traffic.config import Demand, TrafficConfig, VehicleType
@@ -215,7 +215,10 @@ class LiveSumo:
         samples = round(duration * RATE) + 1
         kinds = np.array([kind(name) for name in self._run.actors], np.int32)
         # The system gives memory only to what is written.
-        empty = Motion(np.zeros((samples, len(kinds)), SAMPLE), kinds, float(RATE), 0.0)
+        shape = samples, len(kinds)
+        table, footing = np.zeros(shape, TRACK), np.zeros(samples * len(kinds), FOOTING)
+        table["footing"] = np.arange(len(footing), dtype=np.uint32).reshape(shape)
+        empty = Motion(table, footing, kinds, float(RATE), 0.0)
         if lamps:
             empty = empty._replace(lamps=np.zeros(empty.table.shape, np.uint8))
         self.motion: Final = joined([empty, *others]) if others else empty
@@ -297,7 +300,12 @@ class LiveSumo:
                 self._run.read_lamps(self.motion.lamps[tracks.driven])
             tracks.append()
         rows = tracks.smooth()
-        self.motion.table[rows, : self._vehicles] = table_of(tracks.rows(rows), self._terrain)
+        made, table = table_of(tracks.rows(rows), self._terrain), self.motion.table
+        for name in OFTEN:
+            table[name][rows, : self._vehicles] = made[name]
+        on = table["footing"][rows, : self._vehicles]
+        for name in SELDOM:
+            self.motion.footing[name][on] = made[name]
 
 
 def _check_alone() -> None:

@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import EntryKind
-from eyas.engine.state.motion import SAMPLE, Motion
+from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.terrain import Terrain, relief_at, slope_at
 from eyas.engine.traffic.lamps import lamps_of
-from eyas.engine.traffic.recording import TrafficRecording
 from eyas.engine.traffic.recording_file import RecordingFile
 from eyas.engine.traffic.smoothing import Tracks, smooth
 from eyas.lanes import compiled
@@ -23,7 +22,7 @@ from eyas.lanes.elementary import atan, sin_cos
 class Vehicles(NamedTuple):
     """Vehicles whose motion is known in advance, made when it is asked for first."""
 
-    motion: Callable[[], Motion]  # Takes two tenths of a second
+    motion: Callable[[], SampledMotion]  # Takes two tenths of a second
     kind: NDArray[np.int32]  # See `Motion`
     lamps: NDArray[np.uint8]  # See `Motion`
     samples: int
@@ -51,29 +50,19 @@ def recorded_vehicles(
     return Vehicles(motion, kind, lamps, outline.samples, outline.rate, origin)
 
 
-def _first(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
+def _first(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) -> SampledMotion:
     """Return the motion of the first vehicles of a file."""
     table = table_of(smooth(file.load()), terrain)[:, : len(kind)]
-    return Motion(table, kind, file.outline().rate, 0.0)
+    return SampledMotion(table, kind, file.outline().rate)
 
 
-def _lamps(motion: Callable[[], Motion], network: RoadNetwork) -> NDArray[np.uint8]:
+def _lamps(motion: Callable[[], SampledMotion], network: RoadNetwork) -> NDArray[np.uint8]:
     made = motion()
     return lamps_of(made.table, made.rate, network)
 
 
-def recorded_motion(
-    recording: TrafficRecording,
-    terrain: Terrain,  # The ground; roads follow its relief
-    kind: NDArray[np.int32],  # Kind of each actor, see `Motion`, shape (A,)
-) -> Motion:
-    """Return the smoothed motion of a recording, on the ground of its map."""
-    assert kind.shape == (recording.actors,), f"kind: shape {kind.shape}"
-    return Motion(table_of(smooth(recording), terrain), kind, float(recording.rate), 0.0)
-
-
 def table_of(tracks: Tracks, terrain: Terrain) -> NDArray[np.void]:
-    """Return the `Motion.table` of tracks on a terrain."""
+    """Return the samples of tracks on a terrain."""
     table = np.zeros(tracks.present.shape, SAMPLE)
     table["x"], table["y"] = np.moveaxis(tracks.position, -1, 0)
     table["velocity_x"], table["velocity_y"] = np.moveaxis(tracks.velocity, -1, 0)

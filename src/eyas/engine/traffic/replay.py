@@ -31,9 +31,10 @@ class Replay:
     def __init__(self, motion: Motion, targets: NDArray[np.bool_] | None = None) -> None:
         assert motion.first_time == 0.0, f"motion: begins at {motion.first_time} s"
         self.motion: Final = motion
-        present = motion.table["present"] > 0.0
+        present = motion.footing["present"] > 0.0
         followed = range(self.actors) if targets is None else np.flatnonzero(targets).tolist()
-        stays = [(actor, *stay) for actor in followed for stay in runs(present[:, actor])]
+        on = motion.table["footing"]
+        stays = [(actor, *stay) for actor in followed for stay in runs(present[on[:, actor]])]
         who, enters, leaves = np.array(stays, np.int64).reshape(-1, 3).T.copy()
         self._stays = Stays(who, enters / motion.rate, (leaves - 1) / motion.rate, math.inf)
 

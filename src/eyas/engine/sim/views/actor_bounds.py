@@ -66,13 +66,14 @@ def _enclose(
     slope = 0.0
     for k in range(first, last):
         a, b = motion.table[k, actor], motion.table[k + 1, actor]
-        if a.present <= 0.0 and b.present <= 0.0:
+        on_a, on_b = motion.footing[a.footing], motion.footing[b.footing]
+        if on_a.present <= 0.0 and on_b.present <= 0.0:
             continue
         low_x, high_x = min(low_x, a.x, b.x), max(high_x, a.x, b.x)
         low_y, high_y = min(low_y, a.y, b.y), max(high_y, a.y, b.y)
-        low_z, high_z = min(low_z, a.z, b.z), max(high_z, a.z, b.z)
-        across = abs(a.velocity_x) + abs(a.velocity_y) + abs(a.velocity_z)
-        slope = max(slope, across + abs(b.velocity_x) + abs(b.velocity_y) + abs(b.velocity_z))
+        low_z, high_z = min(low_z, on_a.z, on_b.z), max(high_z, on_a.z, on_b.z)
+        across = abs(a.velocity_x) + abs(a.velocity_y) + abs(on_a.velocity_z)
+        slope = max(slope, across + abs(b.velocity_x) + abs(b.velocity_y) + abs(on_b.velocity_z))
     if high_x < low_x:
         return
     wide, deep, high = 0.5 * (high_x - low_x), 0.5 * (high_y - low_y), 0.5 * (high_z - low_z)
