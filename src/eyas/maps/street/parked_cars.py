@@ -13,7 +13,7 @@ from eyas.engine.world.build.scene_builder import Levels
 
 FILE = Path(__file__).with_name("parked_cars.eya")
 
-SHA256 = "e6f9f3b266548e09c778d51316259a3950b07975ac5006c20eb2a874a57c0827"
+SHA256 = "6e659b9140d642e79ccde919f0777b431f197b86613618f3bca231855b9ed26b"
 """Of its index, which has the digest of its arrays: it stands for them in the keys of scenes."""
 
 VARIANTS = 32  # Number of kinds of cars; each is as frequent as another
