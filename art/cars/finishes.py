@@ -16,7 +16,7 @@ BLACK_PAINT = Material(
 """A nearly black shade of the body colour, with the seams of a roof."""
 
 GLASS = Material(tint=(0.115, 0.12, 0.125), surface=Surface.GLASS)  # Tinted windows
-PANE = Material(texture="panes", tint=(0.5, 0.51, 0.52), surface=Surface.GLASS)
+PANE = Material(texture="panes", tint=(0.62, 0.65, 0.67), surface=Surface.GLASS)
 """Tinted windows with their frames, and what is behind them."""
 
 ROOF_GLASS = Material(

@@ -13,6 +13,7 @@ from eyas.engine.targets.catalogue import (
     models_of,
     register,
 )
+from eyas.engine.targets.colour_names import colour_name
 from eyas.engine.targets.config import TargetName
 from eyas.engine.traffic.config import VehicleType
 
@@ -74,10 +75,12 @@ def test_names_are_taken_once_and_models_are_their_kinds(walker):
         register(stranger)
 
 
-def test_there_are_the_eight_body_colours_of_the_original():
-    colours = KINDS[kind_index("passenger")].colours
-    assert len(set(colours)) == 8
-    assert (0.85, 0.85, 0.05) in colours
+@pytest.mark.parametrize("kind", ["passenger", "bus", "truck", "trailer"])
+def test_three_in_four_bodies_are_white_black_grey_or_silver(kind):
+    names = [colour_name(colour) for colour in KINDS[kind_index(kind)].colours]
+    dull = sum(name in ("white", "black", "dark grey", "grey") for name in names)
+    assert dull / len(names) == 0.75
+    assert len(set(names)) == 8
 
 
 def with_model(kind, **changes):

@@ -11,6 +11,8 @@ from eyas.lanes import kernel
 
 _UPRIGHT = 4.0  # What is higher than so many times half its width stands on two feet
 
+_ROUND = 0.96  # Length of the lower box, whose corners bodies do not fill, as a share
+
 _HIPS, _LEGS, _TRUNK = 0.5, 0.6, 0.82
 """Of what stands on two feet: height of the hips, as a share of its own; width of the legs, and of
 trunk and head, as shares of that of the trunk."""
@@ -158,8 +160,9 @@ def boxes_of(caster: Caster, sun: Direction) -> ShadowBoxes:
     legs, trunk = 1.0, 1.0
     if upright:
         waist, legs, trunk = f4(_HIPS * height), _LEGS, _TRUNK
+    long = f4(_ROUND * caster.length)
     lower = Box(
-        f4(-caster.length), f4(caster.length), f4(legs * caster.lower_right),
+        -long, long, f4(legs * caster.lower_right),
         f4(legs * caster.lower_left), f4(0.0), waist,
     )  # fmt: skip
     upper = Box(

@@ -332,7 +332,7 @@ def shade_point(
         if any_of(mirror > zero):
             facing = lesser(greater(cosine, zero), one)
             # Panes are flat: all of one would glint at once.
-            glint = reaching * select(surface == GLASS, like(mirror, f4(0.25)), one)
+            glint = reaching * select(surface == GLASS, like(mirror, f4(0.12)), one)
             mirrored, share = reflection(lit, way, normal, facing, mirror, glint, one - open_share)
             # Clear coat is no perfect mirror, even at a grazing angle.
             coat = select(surface == PAINT, like(alpha, f4(0.85)), one)
