@@ -7,7 +7,6 @@ import pytest
 from art import parts
 from art.cars.finishes import (
     BLACK_PAINT,
-    BRIGHT,
     HEAD_LAMP,
     INDICATOR_LEFT,
     INDICATOR_RIGHT,
@@ -82,10 +81,13 @@ def first_hits(mesh, axis, sign, rays=24):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_size_is_the_catalogues_within_five_centimetres(name):
+def test_size_is_the_catalogues_within_five_centimetres_but_for_mirrors(name):
     mesh = whole(name)
     low, high = mesh.positions.min(0), mesh.positions.max(0)
-    assert high - low == pytest.approx(BY_NAME[name].size, abs=0.05)
+    size = np.array(BY_NAME[name].size)
+    assert (high - low)[[0, 2]] == pytest.approx(size[[0, 2]], abs=0.05)
+    # The width of a catalogue is that without mirrors, which reach 3.5 cm farther on either side.
+    assert -0.05 <= high[1] - low[1] - size[1] <= 0.08
     assert low[2] == pytest.approx(0.0, abs=1e-6)
     assert (low + high)[:2] / 2 == pytest.approx(np.zeros(2), abs=0.03)
 
@@ -156,7 +158,7 @@ def test_the_box_of_a_model_holds_every_level_of_every_variant(vehicle):
     half = np.array([vehicle.length / 2, vehicle.width / 2, vehicle.height])
     for body in (vehicle.body, *vehicle.variants):
         for mesh in body(vehicle):
-            assert (np.abs(mesh.positions) <= half + 0.03).all()
+            assert (np.abs(mesh.positions) <= half + 0.04).all()
             assert mesh.uvs.min() >= 0.0
             assert mesh.uvs.max() <= 1.0
 
@@ -178,21 +180,6 @@ def test_variants_differ_in_detail_and_have_the_size_and_roof_of_their_model(veh
 
 def corners_of(mesh, material):
     return mesh.positions[mesh.triangles[mesh.materials == mesh.palette.index(material)]]
-
-
-def test_two_bars_of_a_rack_cross_the_roof_and_touch_it_nowhere():
-    rack, roof = (
-        corners_of(levels_of("RangeRoverSportSVRSimple")[0], part) for part in (BRIGHT, BLACK_PAINT)
-    )
-    bars = rack[(rack[..., 1].min(axis=1) < -0.3) & (rack[..., 1].max(axis=1) > 0.3)]
-    places = np.unique(np.round(bars[..., 0], 3))
-    assert len(places) == 4  # both edges of both bars
-    middle = roof[np.abs(roof[..., 1]).min(axis=1) < 1e-3]
-    for bar in places:
-        near = bars[np.abs(bars[..., 0] - bar).min(axis=1) < 1e-2]
-        line = middle.reshape(-1, 3)[np.abs(middle.reshape(-1, 3)[:, 1]) < 1e-3]
-        order = np.argsort(line[:, 0])
-        assert near[..., 2].min() > np.interp(bar, line[order, 0], line[order, 2])
 
 
 def test_a_motorbike_has_an_indicator_on_either_side_of_its_tail():

@@ -27,7 +27,7 @@ def test_a_cone_is_wide_below_and_narrow_above(village):
     for bottom, top, radius in slices:
         there = away[(corners[:, 2] >= bottom) & (corners[:, 2] <= top)]
         if len(there):
-            assert radius == pytest.approx(0.85 * there.max(), rel=0.25)
+            assert radius == pytest.approx(0.85 * there.max(), rel=0.3)
 
 
 def test_every_tree_stands_where_it_is_drawn_and_none_beside(village):
