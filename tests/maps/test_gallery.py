@@ -140,9 +140,9 @@ def test_most_stands_where_pictures_show_most(still, views):
     assert still.sights(view) > 0.8 * rated.max()
 
 
-def test_a_distant_view_in_which_fog_leaves_nothing_to_see_is_left_out(still, views):
-    foggy = WorldConfig(map="lake", weather="foggy")
-    hidden = choose_viewpoints(StillScene(load_assets(foggy, TrafficConfig(), 1)), SUN)
+def test_a_distant_view_in_which_dust_leaves_nothing_to_see_is_left_out(still, views):
+    dusty = WorldConfig(map="lake", weather="dust")
+    hidden = choose_viewpoints(StillScene(load_assets(dusty, TrafficConfig(), 1)), SUN)
     assert "horizon" not in {view.name for view in hidden}
     horizon = next(view for view in views if view.name == "horizon")
     assert still.contrast(horizon) > 5.0

@@ -126,7 +126,7 @@ def found_in(name, season=Season.SUMMER):
 KNOWN = {
     "citystreet": {"asphalt plain": 70},
     "downtown": {"concrete": 150},
-    "village": {"lawn stone": 15},
+    "village": {"lawn stone": 21},
 }
 """Pairs that are left: paint on twisted parts of the overpass, above them by less than a
 centimetre; ledges of houses that share a party wall, both of concrete, at chance heights; corners

@@ -45,8 +45,8 @@ def keys() -> dict[str, str]:
         "shadows": shadows._bake,
         "ambient": ambient._bake,
         "recording": library._recorded,
-        "vehicles": recorded._numbers,
-        "people": crowd_motion._numbers_of,
+        "vehicles": recorded._first,
+        "people": crowd_motion._samples_of,
     }
     return {
         **{name: program.code_of(make) for name, make in makers.items()},

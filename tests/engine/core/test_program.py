@@ -45,7 +45,7 @@ EDITS = {
     "shapes": [("engine/targets/shapes.py", 'SHA256 = "', 'SHA256 = "0')],
     "parked": [("maps/street/parked_cars.py", 'SHA256 = "', 'SHA256 = "0')],
     "sun": [
-        ("engine/world/weather.py", "sun_colour=(1.02, 0.96, 0.84)", "sun_colour=(1.02, 0.1, 0.1)")
+        ("engine/world/weather.py", "sun_colour=(1.56, 1.49, 1.32)", "sun_colour=(1.56, 0.1, 0.1)")
     ],
     "shading": [
         ("engine/render/kernels/surface/shade.py", "SHARP = f4(0.004)", "SHARP = f4(0.005)")

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.render.textures.fields import SIZE
@@ -32,6 +31,8 @@ def build_textures() -> dict[str, NDArray[np.uint8]]:
     Raises:
         DataFileError: The installation is damaged.
     """
+    from PIL import Image  # not needed once scenes are in the cache, and slow to import
+
     # Order of the layers: that of the table of materials.
     layers = np.zeros((len(TEXTURES), SIZE, SIZE, 4), np.uint8)
     try:
