@@ -62,7 +62,8 @@ def _identifier(name: object) -> str:
             f"name: a {type(name).__name__} is not allowed; allowed: a map and a weather, such as "
             "'village-night'; other settings are the argument `config`"
         )
-    return f"eyas/{name}-v0"
+    plain = name.removeprefix("eyas/").removesuffix("-v0")  # whole names are taken, too
+    return f"eyas/{plain}-v0"
 
 
 def make_config(source: Source = None, **choices: Unpack[EnvChoices]) -> "EyasConfig":

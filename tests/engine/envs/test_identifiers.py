@@ -49,3 +49,7 @@ def test_every_registered_environment_is_a_map_in_a_weather():
 def test_settings_in_the_place_of_a_name_are_refused_in_one_line(make):
     with pytest.raises(ConfigError, match=r"name: a dict is not allowed; .*the argument `config`"):
         make({"world": {"map": "village"}})
+
+
+def test_whole_names_of_gymnasium_are_taken_too():
+    assert eyas.make("eyas/citystreet-day-v0").spec.id == "eyas/citystreet-day-v0"
