@@ -52,7 +52,7 @@ SHEETS: dict[str, tuple[str, ...]] = {
 """Tools with their arguments, SCRATCH a new folder, and the files that each writes."""
 
 COMMANDS: dict[str, tuple[str, ...]] = {
-    "eyas targets show all --out docs/images/targets.jpg": ("targets.jpg",),
+    "targets_page.py docs/images/targets.jpg": ("targets.jpg",),
     "demo_page.py docs/images/demo.jpg": ("demo.jpg",),
 }
 UNDRAWN = {"flown-steps.png", "frames.svg"}  # A plot and a drawing, which no look changes

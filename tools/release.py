@@ -33,6 +33,7 @@ CHECKS: tuple[tuple[str, ...], ...] = (
     ("lint-imports",),
     ("python", "tools/write_docs.py", "--check"),
     ("python", "tools/ship_kernels.py", "--check"),
+    ("python", "tools/docs_pictures.py", "--stale"),
     ("eyas", "verify"),
     ("python", "-m", "sphinx", "-W", "-q", "docs", "site"),
     ("python", "-m", "pytest", "-n", "2", "--dist", "loadfile"),
