@@ -28,8 +28,8 @@ def close_memory() -> None:
     fields = Path("/proc/self/stat").read_text().rpartition(")")[2].split()
     begin, end = (int(fields[number - 2]) for number in _ARGUMENTS)
     words = Path("/proc/self/cmdline").read_bytes().split(b"\0")[:_KEPT]
-    told = sum(len(word) + 1 for word in words)
-    ctypes.memset(begin + told, 0, max(end - begin - told, 0))
+    shown = sum(len(word) + 1 for word in words)
+    ctypes.memset(begin + shown, 0, max(end - begin - shown, 0))
 
 
 def give_up_rights() -> None:
