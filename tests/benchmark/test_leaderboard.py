@@ -95,8 +95,9 @@ def test_honest_figures_are_confirmed_by_fresh_episodes(board):
     for found in verify(board, fresh=40):
         assert found.verdict is EntryVerdict.VERIFIED, found.line
     assert "none: may be" not in shown(board)
-    with pytest.raises(EyasError, match="--fresh: 3 is not allowed"):
-        list(verify(board, fresh=3))
+    for wrong in (3, 10**12):
+        with pytest.raises(EyasError, match=f"--fresh: {wrong} is not allowed"):
+            list(verify(board, fresh=wrong))
 
 
 @pytest.mark.parametrize(

@@ -25,9 +25,12 @@ def close_memory() -> None:
     if sys.platform != "linux":
         return
     ctypes.CDLL(None).prctl(_DUMPABLE, 0, 0, 0, 0)
-    fields = Path("/proc/self/stat").read_text().rpartition(")")[2].split()
+    try:
+        fields = Path("/proc/self/stat").read_text().rpartition(")")[2].split()
+        words = Path("/proc/self/cmdline").read_bytes().split(b"\0")[:_KEPT]
+    except OSError:  # nothing is mounted there, and so nothing can be read there
+        return
     begin, end = (int(fields[number - 2]) for number in _ARGUMENTS)
-    words = Path("/proc/self/cmdline").read_bytes().split(b"\0")[:_KEPT]
     shown = sum(len(word) + 1 for word in words)
     ctypes.memset(begin + shown, 0, max(end - begin - shown, 0))
 

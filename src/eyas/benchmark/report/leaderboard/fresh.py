@@ -22,14 +22,15 @@ from eyas.engine.core.rng import TEST_SEEDS
 from eyas.engine.world.maps import MAPS
 
 _SEEDS = 1 << 33, 1 << 39
-"""From which to which number seeds are drawn: beyond those of sets, and below those of training."""
+"""First and last seed of fresh episodes: beyond those of sets, and below those of training."""
 
 _TOWNS = 1_000, 90_000_000
-"""From which to which number after `TEST_SEEDS` seeds of traffic and towns are drawn: beyond those
-that ship."""
+"""First and last seed of fresh traffic and towns, counted from `TEST_SEEDS`: beyond those that
+ship."""
 
 
-LEAST = 40  # Fewest fresh episodes: of fewer, intervals are rough
+LEAST, MOST = 40, 100_000
+"""Fewest and most fresh episodes: of fewer, intervals are rough; so many may a plan have."""
 
 
 class FreshFigure(Config):
@@ -106,7 +107,10 @@ def _episodes(plan: EvaluationPlan, rules: Protocol, seed: int, count: int) -> l
     names = plan.maps
     if rules.elsewhere and rules.recordings != plan.rules.recordings:
         towns = [Place(name, "", "").town[0] for name in plan.maps]
-        names = tuple(f"{name}:{_test_seed()}" for name in towns if name in MAPS.built_in)
+        names = tuple(
+            f"{town}:{_test_seed()}" if town in MAPS.built_in else name
+            for town, name in zip(towns, plan.maps, strict=True)
+        )
     places = [
         Place(name, weather, target)
         for name in names

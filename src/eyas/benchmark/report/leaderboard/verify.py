@@ -22,7 +22,7 @@ from eyas.benchmark.policies.shipped import shipped_names
 from eyas.benchmark.policies.table import FILES, POLICIES
 from eyas.benchmark.records.record import EpisodeRecord
 from eyas.benchmark.records.result import EPISODES
-from eyas.benchmark.report.leaderboard.fresh import LEAST, fresh_figure
+from eyas.benchmark.report.leaderboard.fresh import LEAST, MOST, fresh_figure
 from eyas.benchmark.report.leaderboard.mark import MARK, Mark, content_hash, signed
 from eyas.benchmark.report.leaderboard.submission import (
     ContradictionError,
@@ -92,8 +92,8 @@ def verify(
     """
     if not 0.0 < share <= 1.0:
         raise ConfigError(f"--share: {share:g} is not allowed: more than 0, at most 1")
-    if fresh and fresh < LEAST:
-        raise ConfigError(f"--fresh: {fresh} is not allowed: 0, or {LEAST} or more episodes")
+    if fresh and not LEAST <= fresh <= MOST:
+        raise ConfigError(f"--fresh: {fresh} is not allowed: 0, or {LEAST} to {MOST} episodes")
     seed = secrets.randbits(32) if seed is None else seed
     for path in folders_in(folder):
         try:
@@ -105,12 +105,12 @@ def verify(
             yield EntryFinding(path, EntryVerdict.UNKNOWN, str(error))
         else:
             write_atomic(path / MARK, (signed(mark).model_dump_json(indent=1) + "\n").encode())
-            told = f"{len(mark.flown)} of {mark.episodes} episodes (--seed {seed}) are equal"
+            found = f"{len(mark.flown)} of {mark.episodes} episodes (--seed {seed}) are equal"
             verdict = EntryVerdict.VERIFIED
             if mark.fresh is not None:
-                told = f"{told}; {mark.fresh.line}"
+                found = f"{found}; {mark.fresh.line}"
                 verdict = verdict if mark.fresh.confirmed else EntryVerdict.UNCONFIRMED
-            yield EntryFinding(path, verdict, told)
+            yield EntryFinding(path, verdict, found)
 
 
 def _flown_again(folder: Path, share: float, seed: int, fresh: int, *, trust: bool) -> Mark:
