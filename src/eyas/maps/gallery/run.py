@@ -165,7 +165,7 @@ def png(rgb: NDArray[np.uint8]) -> bytes:
     return buffer.getvalue()
 
 
-_PLAIN = 2.0  # Contrast of a distant view in which haze or fog leaves nothing to see [sRGB levels]
+_PLAIN = 3.0  # Contrast of a distant view in which haze or fog leaves nothing to see [sRGB levels]
 
 
 def choose_viewpoints(still: StillScene, sun: tuple[float, float, float]) -> list[Viewpoint]:
