@@ -1,14 +1,12 @@
 """Kinds of frames and episodes, at their limits."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 from eyas.datasets.formats.uavdt import HIGH, LONG_TERM, LOW, STEEP
 from eyas.datasets.statistics import episode_kinds
-from eyas.datasets.tracking.one_pass import track_episode
-from eyas.datasets.tracking.run import near_look_alikes
+from eyas.datasets.tracking.clip import near_look_alikes
+from eyas.datasets.tracking.one_pass import track_clip
 
 
 @pytest.mark.parametrize(
@@ -47,16 +45,15 @@ class Lost:
 
 
 def test_a_tracker_is_restarted_five_frames_after_a_failure():
-    frame = SimpleNamespace(picture=lambda: np.zeros((8, 8, 3), np.uint8))
-    arrays = {"target_box": np.tile([1, 1, 4, 4], (14, 1)), "visible_fraction": np.ones(14)}
+    class Still:
+        boxes, visible = np.tile([1.0, 1.0, 3.0, 3.0], (14, 1)), np.ones(14, np.bool_)
 
-    class Episode(dict):
-        def __getitem__(self, number):
-            return frame
+        def __len__(self):
+            return 14
 
-        def array(self, name):
-            return arrays[name]
+        def pictures(self):
+            return iter(np.zeros((14, 8, 8, 3), np.uint8))
 
-    track = track_episode(Lost, Episode(), restarts=True)
+    track = track_clip(Lost, Still(), restarts=True)
     assert np.flatnonzero(track.told).tolist() == [0, 6, 12]
     assert track.failures == 3

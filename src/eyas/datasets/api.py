@@ -12,16 +12,22 @@ def track(
     *,
     split: str | None = None,
     restarts: bool = False,
+    only: str | None = None,
+    truth: Path | str | None = None,
+    box: tuple[float, float, float, float] | None = None,
     overwrite: bool = False,
 ) -> dict[str, Any]:
-    """Score a box tracker on recorded episodes, like `eyas track`; return `results.json`.
+    """Score a box tracker on recordings or sequences, like `eyas track`; return `results.json`.
 
     Args:
-        recording: Folder of a recording or a data set.
+        recording: Folder of a recording, a data set or sequences of others; or a film.
         tracker: `csrt`, `kcf`, `nano`, `stay`, or `package.module:Class`.
         out: Folder for its boxes and figures.
         split: Only `train`, `val` or `test` of a data set.
         restarts: Whether it gets the true box again after a failure.
+        only: Pattern of the names of clips that are used, as `car*`.
+        truth: File of the true boxes of a film, or of a folder of pictures.
+        box: The target in the first picture: left, top, width, height [pixels], for no truth.
         overwrite: Whether what is in the folder is replaced.
 
     Raises:
@@ -29,7 +35,9 @@ def track(
     """
     from eyas.datasets.tracking.run import Scoring, run
 
-    scoring = Scoring(tracker, Path(recording), split, restarts)
+    scoring = Scoring(
+        tracker, Path(recording), split, restarts, only, Path(truth) if truth else None, box
+    )
     return run(scoring, Path(out), overwrite=overwrite)
 
 

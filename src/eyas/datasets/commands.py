@@ -80,7 +80,12 @@ def export(
 
 def track(
     recording: Annotated[
-        Path, typer.Argument(help="Folder of a recording, or of a data set.", show_default=False)
+        Path,
+        typer.Argument(
+            help="Folder of a recording, of a data set or of sequences (GOT-10k, OTB, LaSOT, "
+            "UAV123, VOT, MOT, VisDrone, DTB70, UAVDT, ...), or a film.",
+            show_default=False,
+        ),
     ],
     tracker: Annotated[
         str,
@@ -94,6 +99,22 @@ def track(
     split: Annotated[
         str | None, typer.Option("--split", help="Only train, val or test of a data set.")
     ] = None,
+    only: Annotated[
+        str | None,
+        typer.Option("--only", metavar="PATTERN", help="Only sequences of such names, as 'car*'."),
+    ] = None,
+    truth: Annotated[
+        Path | None,
+        typer.Option("--truth", help="File of the true boxes of a film or a folder of pictures."),
+    ] = None,
+    box: Annotated[
+        str | None,
+        typer.Option(
+            "--box",
+            metavar="LEFT,TOP,WIDTH,HEIGHT",
+            help="The target in the first picture, in pixels, where there is no truth.",
+        ),
+    ] = None,
     restarts: Annotated[
         bool,
         typer.Option("--restarts", help="After a failure, give the tracker the true box again."),
@@ -104,10 +125,10 @@ def track(
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
-    """Score a box tracker on recorded episodes: AO, SR, success, precision, by kinds of frames."""
+    """Score a box tracker on recordings or real sequences: AO, SR, success, precision."""
     from eyas.benchmark.report.plots import require_matplotlib
     from eyas.datasets.tracking.report import draw_curves, print_figures
-    from eyas.datasets.tracking.run import Scoring, run
+    from eyas.datasets.tracking.run import Scoring, parsed_box, run
 
     refuse_both(resume=resume, overwrite=overwrite)
     if plots:
@@ -115,7 +136,15 @@ def track(
     name = tracker.rpartition(":")[2].lower()
     folder = out or Path("runs/track") / f"{recording.resolve().name}-{name}"
     results = run(
-        Scoring(tracker, recording, split, restarts),
+        Scoring(
+            tracker,
+            recording,
+            split,
+            restarts,
+            only,
+            truth,
+            None if box is None else parsed_box(box),
+        ),
         folder,
         workers=workers,
         resume=resume,

@@ -15,7 +15,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from eyas.datasets.tracking.one_pass import overlaps, true_boxes
+from eyas.datasets.tracking.clip import RecordedClip
+from eyas.datasets.tracking.one_pass import overlaps
 from eyas.datasets.tracking.run import Scoring, run
 from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.errors import EyasError
@@ -101,13 +102,13 @@ def test_any_number_of_processes_and_an_interruption_give_the_same_bytes(folder,
 def test_the_order_of_episodes_changes_no_box_of_opencv(folder):
     pytest.importorskip("cv2")
     from eyas.benchmark.policies.box_trackers import box_tracker
-    from eyas.datasets.tracking.one_pass import track_episode
+    from eyas.datasets.tracking.one_pass import track_clip
 
     episodes = list(load(folder))
     for name in ("csrt", "kcf", "mosse", "medianflow"):
         make = box_tracker(name)
-        there = [track_episode(make, episode).boxes for episode in episodes]
-        back = [track_episode(make, episode).boxes for episode in episodes[::-1]][::-1]
+        there = [track_clip(make, RecordedClip(episode)).boxes for episode in episodes]
+        back = [track_clip(make, RecordedClip(episode)).boxes for episode in episodes[::-1]][::-1]
         assert all((one == two).all() for one, two in zip(there, back, strict=True)), name
 
 
@@ -222,7 +223,7 @@ def test_the_same_class_flies_closed_loop(tmp_path):
 
 def test_truth_is_inside_the_picture(folder):
     for episode in load(folder):
-        boxes = true_boxes(episode)
+        boxes = RecordedClip(episode).boxes
         assert (boxes[:, :2] + boxes[:, 2:] <= episode.size).all()
 
 

@@ -1,4 +1,4 @@
-"""One-pass evaluation of box trackers over recorded episodes, and its figures.
+"""One-pass evaluation of box trackers over clips, and its figures.
 
 AO and SR as in Huang et al., "GOT-10k" (TPAMI 2021): over all frames after the first in which the
 target is visible, boxes cut to the picture. Success and precision with the thresholds of Wu et al.,
@@ -11,17 +11,14 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eyas.benchmark.policies.box_trackers import Box, BoxTracker
 from eyas.benchmark.statistics.intervals import Interval, clusters_of, interval_of
-from eyas.engine.recordings.recording import RecordedEpisode
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from eyas.datasets.tracking.clip import Clip, Floats, Mask
 
 PRECISION_PIXELS = 20  # Largest distance of the centres that counts as precise [pixels]
 _SUCCESS = np.linspace(0.0, 1.0, 21)  # Thresholds of OTB's success curve
+_NORMALIZED = np.linspace(0.0, 0.5, 51)  # Thresholds of LaSOT's normalized precision
 _RESTART_AFTER = 5  # Frames after a failure until the tracker gets the true box again
 
 
@@ -34,32 +31,22 @@ class Track(NamedTuple):
     seconds: Floats  # How long it took [s], NaN where it was not asked, shape (T,)
 
 
-def true_boxes(episode: RecordedEpisode) -> Floats:
-    """Return left, top, width, height [pixels], hidden parts included, shape (T, 4)."""
-    boxes = episode.array("target_box").astype(np.float64).reshape(-1, 4)
-    boxes[:, 2:] -= boxes[:, :2]
-    return boxes
-
-
-def track_episode(
-    make: Callable[[], BoxTracker], episode: RecordedEpisode, *, restarts: bool = False
-) -> Track:
-    """Let a tracker find the target in all frames of an episode.
+def track_clip(make: Callable[[], BoxTracker], clip: Clip, *, restarts: bool = False) -> Track:
+    """Let a tracker find the target in all frames of a clip.
 
     Args:
-        episode: The episode. The tracker begins with the first frame in which the target is
-            visible.
+        make: Makes the tracker.
+        clip: The clip. The tracker begins with the first frame in which the target is visible.
         restarts: Whether it gets the true box again after a failure: a box that does not overlap
             that of a visible target.
     """
-    truth, visible = true_boxes(episode), episode.array("visible_fraction") > 0.0
-    count = len(truth)
+    truth, visible = clip.boxes, clip.visible
+    count = len(clip)
     boxes, told = np.zeros((count, 4)), np.zeros(count, np.bool_)
     seconds, failures = np.full(count, np.nan), 0
     tracker: BoxTracker | None = None
     next_start = 0
-    for number in range(count):
-        picture = episode[number].picture()
+    for number, picture in enumerate(clip.pictures()):
         if tracker is None:
             if number < next_start or not visible[number]:
                 continue
@@ -129,6 +116,18 @@ class Figures(NamedTuple):
     success: float  # Area below OTB's success curve, the mean over episodes
 
 
+class Published(NamedTuple):
+    """The figures as OTB, LaSOT, UAV123 and TrackingNet publish them.
+
+    The first frame counts, whose box the tracker was given; boxes are not cut to the picture; each
+    is a mean over clips.
+    """
+
+    success: float  # Area below the curve of 21 overlaps
+    precision: float  # Share of frames whose centre is within `PRECISION_PIXELS`
+    normalized_precision: float  # Area below the curve of 51 distances, to half of the box's size
+
+
 def figures_of(
     # Overlaps and centre errors [pixels] of the chosen frames of each episode, both of shape (K,)
     samples: Sequence[tuple[Floats, Floats]],
@@ -151,6 +150,29 @@ def figures_of(
         precision=float((error <= PRECISION_PIXELS).mean()),
         success=float(np.mean(curves)),
     )
+
+
+def published_figures(clips: Sequence[tuple[Floats, Floats]]) -> Published | None:
+    """Return the figures of clips as they are published.
+
+    Args:
+        clips: Boxes and true boxes of the frames that count of each clip: left, top, width, height
+            [pixels], both of shape (K, 4).
+    """
+    rows = []
+    for boxes, truth in clips:
+        if len(truth):
+            offsets = boxes[:, :2] + 0.5 * boxes[:, 2:] - truth[:, :2] - 0.5 * truth[:, 2:]
+            normalized = offsets / truth[:, 2:]
+            distances = np.sqrt((normalized * normalized).sum(axis=1))
+            rows.append(
+                (
+                    (overlaps(boxes, truth)[:, None] > _SUCCESS).mean(),
+                    (centre_errors(boxes, truth) <= PRECISION_PIXELS).mean(),
+                    (distances[:, None] <= _NORMALIZED).mean(),
+                )
+            )
+    return Published(*np.mean(rows, axis=0).tolist()) if rows else None
 
 
 def _interval(

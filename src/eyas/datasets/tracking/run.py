@@ -1,13 +1,16 @@
-"""Score a box tracker on a recording or a data set: one pass, stratified by the truth."""
+"""Score a box tracker on recordings or sequences: one pass, stratified by the truth."""
 
 import io
 import json
+import math
 import multiprocessing
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from copy import copy
 from dataclasses import asdict, dataclass
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
@@ -15,96 +18,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.benchmark.policies.box_trackers import box_tracker
+from eyas.datasets.tracking.clip import Clip, Mask, RecordedClip
 from eyas.datasets.tracking.one_pass import (
     Figures,
     centre_errors,
     figures_of,
     overlaps,
-    track_episode,
-    true_boxes,
+    published_figures,
+    track_clip,
 )
+from eyas.datasets.tracking.sequences import sequences_in
 from eyas.engine.core.decoding import read_json
-from eyas.engine.core.errors import ConfigError, DataFileError, EyasError, OutputError
+from eyas.engine.core.errors import (
+    ConfigError,
+    DataFileError,
+    EyasError,
+    OutputError,
+    UnknownNameError,
+)
 from eyas.engine.core.files import read_limited, refusals, write_atomic
 from eyas.engine.core.folder_lock import LOCK, folder_lock
 from eyas.engine.core.identity.build import this_build
-from eyas.engine.exports.label import Label
-from eyas.engine.recordings.recording import RecordedEpisode, Recording, load
+from eyas.engine.recordings.recording import load
 from eyas.engine.terminal.interrupts import interrupts_held
 from eyas.engine.terminal.progress import frames_bar
-from eyas.lanes import exact, thread_count
-
-# Kinds of frames by the truth that only a simulator knows: how much of the target is visible, how
-# many others look like it, its size and speed in the picture, the weather, the map.
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-
-_NEAR = 4.0
-"""Look-alikes count within this many diagonals of the target's box: where trackers search."""
-
-
-def strata_of(episode: RecordedEpisode) -> Mapping[str, Mapping[str, Mask]]:
-    """Return for each criterion its values, and which frames have each, shape (T,)."""
-    labels = episode.labels
-    visible = episode.array("visible_fraction")
-    boxes = episode.array("target_box").astype(np.float64)
-    sides = boxes[:, 2:] - boxes[:, :2]
-    size = np.sqrt(sides.prod(axis=1))
-    world, count = episode.config.world, len(labels)
-    every = np.ones(count, np.bool_)
-    alike = np.array([near_look_alikes(label) for label in labels])
-    return {
-        "visible": {
-            "whole": visible >= 0.999,
-            "half or more": (visible >= 0.5) & (visible < 0.999),
-            "less than half": (visible > 0.0) & (visible < 0.5),
-        },
-        "look-alikes": {"none": alike == 0, "one": alike == 1, "several": alike > 1},
-        "size": {
-            "below 16 px": size < 16.0,
-            "16 to 32 px": (size >= 16.0) & (size < 32.0),
-            "32 to 64 px": (size >= 32.0) & (size < 64.0),
-            "64 px and more": size >= 64.0,
-        },
-        "speed": _speeds(boxes, size, episode.fps),
-        "border": {
-            "inside": episode.array("target_truncated") <= 0.0,
-            "cut": episode.array("target_truncated") > 0.0,
-        },
-        "weather": {str(world.weather): every},
-        "map": {str(world.map): every},
-        "class": {str(labels[0]["target_type"]): every},
-    }
-
-
-def _speeds(
-    boxes: NDArray[np.float64], size: NDArray[np.float64], fps: float
-) -> Mapping[str, Mask]:
-    """Return the frames by how many of its own sizes the box moves in a second."""
-    centres = 0.5 * (boxes[:, :2] + boxes[:, 2:])
-    steps = np.diff(centres, axis=0, prepend=centres[:1])
-    rate = np.sqrt((steps * steps).sum(axis=1)) * fps / np.maximum(size, 1.0)
-    return {
-        "below 0.5 sizes/s": rate < 0.5,
-        "0.5 to 2 sizes/s": (rate >= 0.5) & (rate < 2.0),
-        "2 sizes/s and more": rate >= 2.0,
-    }
-
-
-def near_look_alikes(label: Label) -> int:
-    """Return how many moving others of the target's class are near it in the picture."""
-    left, top, right, bottom = label["target_box"]
-    reach = _NEAR * float(exact.hypot(right - left, bottom - top))
-    x, y = 0.5 * (left + right), 0.5 * (top + bottom)
-    found = 0
-    for other in label["others"]:
-        if other["class_id"] == label["target_class_id"] and "parked" not in other:
-            u, v, w, z = other["box"]
-            distance = float(exact.hypot(0.5 * (u + w) - x, 0.5 * (v + z) - y))
-            found += distance <= reach
-    return found
-
+from eyas.lanes import thread_count
 
 SCORING, RESULTS, BOXES = "tracking.json", "results.json", "boxes"
 """What was asked, the figures, and the folder with a file of boxes for each episode."""
@@ -119,15 +57,36 @@ class Scoring:
 
     Attributes:
         tracker: A name of `BOX_TRACKERS`, or `package.module:Class`.
-        folder: Of a recording or a data set.
+        folder: Of a recording, a data set, or sequences of others; or a film.
         split: The split that is used; None: all.
         restarts: Whether the tracker gets the true box again after a failure.
+        only: Pattern of the names of clips that are used, as of files; None: all.
+        truth: The file of the true boxes of a film, or of a folder of pictures.
+        box: Left, top, width, height of the target in the first picture, in place of `truth`.
     """
 
     tracker: str
     folder: Path
     split: str | None = None
     restarts: bool = False
+    only: str | None = None
+    truth: Path | None = None
+    box: tuple[float, float, float, float] | None = None
+
+
+def parsed_box(text: str) -> tuple[float, float, float, float]:
+    """Return the box that a text gives as `left,top,width,height`.
+
+    Raises:
+        ConfigError: It is no box with an area.
+    """
+    try:
+        left, top, width, height = (float(cell) for cell in text.split(","))
+    except ValueError:
+        left, top, width, height = (math.nan,) * 4
+    if not (max(abs(left), abs(top), width, height) <= 1e6 and min(width, height) > 0.0):
+        raise ConfigError(f"--box: {text!r:.80} is not allowed: left,top,width,height [pixels]")
+    return left, top, width, height
 
 
 def run(
@@ -147,8 +106,7 @@ def run(
         EyasError: Something is wrong with the tracker, the recording or the folder; one line.
         KeyboardInterrupt: The user stopped it; every file that exists is complete.
     """
-    recording = load(scoring.folder)
-    episodes = _episodes(recording, scoring.split)
+    episodes = _clips(scoring)
     box_tracker(scoring.tracker)  # raises before anything is written
     with folder_lock(out, "tracking into it"):
         _open(out, scoring, resume=resume, overwrite=overwrite)
@@ -165,16 +123,33 @@ def run(
     return results
 
 
-def _episodes(recording: Recording, split: str | None) -> Sequence[RecordedEpisode]:
-    splits = sorted({episode.split for episode in recording if episode.split})
-    if split is not None and split not in splits:
-        raise ConfigError(
-            f"--split: {split!r} is not allowed: {', '.join(splits) or 'a recording has none'}"
-        )
-    chosen = recording.episodes if split is None else recording.split(split).episodes
-    if not chosen:
-        raise DataFileError(f"{recording.folder}: has no episodes")
-    return chosen
+def _clips(scoring: Scoring) -> Sequence[Clip]:
+    """Return what is tracked."""
+    folder = scoring.folder
+    ours = any((folder / name).is_file() for name in ("config.json", "dataset.json"))
+    if ours and (scoring.truth or scoring.box):
+        raise ConfigError(f"--truth, --box: {folder} is a recording of Eyas, which has its own")
+    clips: list[Clip] = []
+    if ours:
+        clips += map(RecordedClip, load(folder))
+    else:
+        clips += sequences_in(folder, scoring.truth, scoring.box)
+    splits = sorted({clip.split for clip in clips if clip.split})
+    if scoring.split is not None:
+        if scoring.split not in splits:
+            raise ConfigError(
+                f"--split: {scoring.split!r} is not allowed: "
+                f"{', '.join(splits) or 'this data has none'}"
+            )
+        clips = [clip for clip in clips if clip.split == scoring.split]
+    if scoring.only is not None:
+        names = [clip.name for clip in clips]
+        clips = [clip for clip in clips if fnmatchcase(clip.name, scoring.only)]
+        if not clips:
+            raise UnknownNameError("--only", scoring.only, names)
+    if not clips:
+        raise DataFileError(f"{folder}: has no episodes")
+    return clips
 
 
 def _open(out: Path, scoring: Scoring, *, resume: bool, overwrite: bool) -> None:
@@ -182,6 +157,8 @@ def _open(out: Path, scoring: Scoring, *, resume: bool, overwrite: bool) -> None
     asked = {
         **asdict(scoring),
         "folder": scoring.folder.resolve().name,
+        "truth": scoring.truth and scoring.truth.name,
+        "box": scoring.box and list(scoring.box),
         "build_id": this_build().id,
     }
     with refusals(out):
@@ -209,12 +186,7 @@ def _open(out: Path, scoring: Scoring, *, resume: bool, overwrite: bool) -> None
 
 
 def _track_all(
-    scoring: Scoring,
-    episodes: Sequence[RecordedEpisode],
-    out: Path,
-    workers: int | None,
-    *,
-    quiet: bool,
+    scoring: Scoring, episodes: Sequence[Clip], out: Path, workers: int | None, *, quiet: bool
 ) -> NDArray[np.float64]:
     """Track what is not tracked yet; return how long each call took [s]."""
     left = [episode for episode in episodes if not _boxes_file(out, episode).exists()]
@@ -229,16 +201,16 @@ def _track_all(
     return np.concatenate(seconds)
 
 
-def _frames(episodes: Sequence[RecordedEpisode]) -> int:
+def _frames(episodes: Sequence[Clip]) -> int:
     return sum(len(episode) for episode in episodes)
 
 
-def _boxes_file(out: Path, episode: RecordedEpisode) -> Path:
+def _boxes_file(out: Path, episode: Clip) -> Path:
     return out / BOXES / f"{episode.name}.txt"
 
 
 def _tracked(
-    scoring: Scoring, episodes: Sequence[RecordedEpisode], workers: int
+    scoring: Scoring, episodes: Sequence[Clip], workers: int
 ) -> Iterator[tuple[str, NDArray[np.float64]]]:
     """Yield the text of boxes of each episode, and how long each call took [s]."""
     if workers == 1:
@@ -263,10 +235,10 @@ def _tracked(
             pool.shutdown(cancel_futures=True)
 
 
-def _tracked_one(scoring: Scoring, episode: RecordedEpisode) -> tuple[str, NDArray[np.float64]]:
+def _tracked_one(scoring: Scoring, episode: Clip) -> tuple[str, NDArray[np.float64]]:
     make = box_tracker(scoring.tracker)
     try:
-        track = track_episode(make, episode, restarts=scoring.restarts)
+        track = track_clip(make, copy(episode), restarts=scoring.restarts)
     except EyasError:
         raise
     except Exception as error:  # whatever a user's tracker raises
@@ -283,21 +255,24 @@ def _tracked_one(scoring: Scoring, episode: RecordedEpisode) -> tuple[str, NDArr
 Sample = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
-def _results(scoring: Scoring, episodes: Sequence[RecordedEpisode], out: Path) -> dict[str, Any]:
+def _results(scoring: Scoring, episodes: Sequence[Clip], out: Path) -> dict[str, Any]:
     """Return the figures of all frames, and of each stratum."""
     everything: list[Sample] = []
     strata: dict[str, dict[str, list[Sample]]] = {}
     single: dict[str, Any] = {}
-    for episode in episodes:
-        overlap, error, counts = _scored(out, episode)
+    published: list[Sample] = []
+    for each in episodes:
+        episode = copy(each)  # whose labels go with it
+        overlap, error, counts, told = _scored(out, episode)
+        published.append(told)
         everything.append((overlap[counts], error[counts]))
         failures = _failures(out, episode)
         single[episode.name] = {**_shown(figures_of(everything[-1:])), "failures": failures}
-        for criterion, values in strata_of(episode).items():
+        for criterion, values in episode.strata().items():
             for value, chosen in values.items():
                 samples = strata.setdefault(criterion, {}).setdefault(value, [])
                 samples.append((overlap[counts & chosen], error[counts & chosen]))
-        episode.__dict__.pop("labels", None)
+    told_as = published_figures(published)
     return {
         "tracker": scoring.tracker,
         "data": scoring.folder.resolve().name,
@@ -305,6 +280,7 @@ def _results(scoring: Scoring, episodes: Sequence[RecordedEpisode], out: Path) -
         "restarts": scoring.restarts,
         "build_id": this_build().id,
         "all": _shown(figures_of(everything)),
+        "published": told_as and {key: round(each, 6) for key, each in told_as._asdict().items()},
         "curves": _curves(everything),
         "strata": {
             criterion: {value: _shown(figures_of(samples)) for value, samples in values.items()}
@@ -315,9 +291,11 @@ def _results(scoring: Scoring, episodes: Sequence[RecordedEpisode], out: Path) -
 
 
 def _scored(
-    out: Path, episode: RecordedEpisode
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
-    """Return overlaps, centre errors, and which frames count (visible, not told), shapes (T,)."""
+    out: Path, episode: Clip
+) -> tuple[NDArray[np.float64], NDArray[np.float64], Mask, Sample]:
+    """Return overlaps, centre errors, which frames count (visible, and the box not given), shapes
+    (T,), and the boxes and true boxes of all visible frames from the first on.
+    """
     path = _boxes_file(out, episode)
     try:
         content = read_limited(path, _LARGEST_BOXES)
@@ -329,14 +307,16 @@ def _scored(
     if table.shape != (len(episode), 5) or not (np.abs(table) <= 1e9).all():
         wrong = f"{path}: has not five numbers for each frame"
         raise DataFileError(f"{wrong}; start again with --overwrite")
-    boxes, truth = table[:, :4], true_boxes(episode)
-    visible = episode.array("visible_fraction") > 0.0
+    boxes, visible = table[:, :4], episode.visible
+    truth = np.nan_to_num(episode.boxes)
     started = np.maximum.accumulate(table[:, 4] > 0.0)
     counts = visible & started & (table[:, 4] == 0.0)
-    return overlaps(boxes, truth, episode.size), centre_errors(boxes, truth), counts
+    shown = visible & started
+    errors = centre_errors(boxes, truth)
+    return overlaps(boxes, truth, episode.size), errors, counts, (boxes[shown], truth[shown])
 
 
-def _failures(out: Path, episode: RecordedEpisode) -> int:
+def _failures(out: Path, episode: Clip) -> int:
     return int(_boxes_file(out, episode).read_text().partition("\n")[0].rpartition(" ")[2])
 
 

@@ -12,16 +12,20 @@ import struct
 import warnings
 import zipfile
 import zlib
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
 from gzip import GzipFile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 _MOST_ARRAYS = 64  # Largest number of arrays in a `.npz`.
 _LARGEST_NUMBER = 2.0**64
@@ -206,23 +210,46 @@ def decoded_picture(path: Path, largest: int, size: tuple[int, int], bands: int)
     Raises:
         DataFileError: It cannot be read or decoded, or has another size or number of colours.
     """
-    from PIL import Image, UnidentifiedImageError  # slow to import, and a start decodes none
+    with _opened(path, largest) as image:
+        if image.size != size:
+            sizes = ("x".join(map(str, each)) for each in (image.size, size))
+            raise DataFileError(f"{path}: has {' pixels, not '.join(sizes)}")
+        if len(image.getbands()) != bands:
+            raise DataFileError(f"{path}: has {len(image.getbands())} colours, not {bands}")
+        return np.asarray(image)
+
+
+@contextmanager
+def _opened(path: Path, largest: int) -> Iterator["Image"]:
+    """Open a picture whose size is to be looked at before it is decoded."""
+    import PIL.Image  # slow, and a start decodes none
 
     content = io.BytesIO(read_limited(path, largest))
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # Pillow's of large pictures: the size is checked here
-            image = Image.open(content)
+            warnings.simplefilter("ignore")  # Pillow's of large pictures: sizes are checked
+            image = PIL.Image.open(content)
         with image:
-            if image.size != size:
-                sizes = ("x".join(map(str, each)) for each in (image.size, size))
-                raise DataFileError(f"{path}: has {' pixels, not '.join(sizes)}")
-            if len(image.getbands()) != bands:
-                raise DataFileError(f"{path}: has {len(image.getbands())} colours, not {bands}")
-            return np.asarray(image)
-    except UnidentifiedImageError:  # its own words tell an address in memory
+            yield image
+    except PIL.UnidentifiedImageError:  # its own words tell an address in memory
         raise DataFileError(f"{path}: cannot read: not a picture") from None
     except DataFileError:
         raise
     except Exception as error:  # Pillow's readers raise whatever they stumble on
         raise DataFileError(f"{path}: cannot read: {error}") from error
+
+
+def any_picture(path: Path, largest: int) -> NDArray[np.uint8]:
+    """Return the pixels of a picture of any size to 100 megapixels, sRGB, shape (H, W, 3).
+
+    Args:
+        path: A file of any format that Pillow reads; what it says of turning is left aside.
+        largest: Largest size of the file [bytes].
+
+    Raises:
+        DataFileError: It cannot be read or decoded, or is too large.
+    """
+    with _opened(path, largest) as image:
+        if image.size[0] * image.size[1] > 100_000_000:
+            raise DataFileError(f"{path}: has more than 100 million pixels")
+        return np.array(image.convert("RGB"))
