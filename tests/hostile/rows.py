@@ -82,7 +82,14 @@ def of_json(path: Path, read: Callable[[], object], chance: random.Random, most:
     return Row(path, read, contents(), **more)
 
 
-def of_bytes(path: Path, read: Callable[[], object], chance: random.Random, most: int, *bombs: Any):
+def of_bytes(
+    path: Path,
+    read: Callable[[], object],
+    chance: random.Random,
+    most: int,
+    *bombs: Any,
+    refuses: bool = True,
+):
     """Return the row of another file, with contents that unpack to much."""
     content = path.read_bytes()
 
@@ -91,7 +98,7 @@ def of_bytes(path: Path, read: Callable[[], object], chance: random.Random, most
             yield bomb() if callable(bomb) else bomb
         yield from mutated(content, chance, most)
 
-    return Row(path, read, contents())
+    return Row(path, read, contents(), refuses)
 
 
 def with_words(text: str, words: tuple[str, ...]) -> Iterator[bytes]:
@@ -747,9 +754,10 @@ def _dataset_plan(folder, chance, most):
 
 @row("boxes")
 def _boxes(folder, chance, most):
+    from eyas.datasets.tracking.clip import RecordedClip
     from eyas.datasets.tracking.run import _boxes_file, _scored
 
-    episode = eyas.load(recorded(folder))[0]
+    episode = RecordedClip(eyas.load(recorded(folder))[0])
     path = _boxes_file(folder, episode)
     path.parent.mkdir(parents=True, exist_ok=True)
     text = "# failures 0\n" + "1,2,3,4,1\n" * len(episode)
@@ -757,6 +765,84 @@ def _boxes(folder, chance, most):
     return of_bytes(
         path, lambda: _scored(folder, episode), chance, most, *with_words(text, ABSURD_WORDS)
     )
+
+
+@row("any picture")
+def _any_picture(folder, chance, most):
+    from PIL import Image
+
+    from eyas.engine.core.decoding import any_picture
+
+    path = folder / "0001.png"
+    Image.fromarray(np.zeros((16, 24, 3), np.uint8)).save(path)
+    content = path.read_bytes()
+    bombs = [png_bomb(content), png_of_giants(content)]
+    return of_bytes(path, lambda: any_picture(path, 1 << 24), chance, most, *bombs)
+
+
+SEQUENCES = ("1,2,3,4\n" * 3, "1,7,1,2,3,4,1,1,0.5\n2,7,1,2,3,4,1,1,1\n", "m1,2,3,2,1,4\n1\n0\n")
+
+
+@row("sequence")
+def _sequence(folder, chance, most):
+    from eyas.datasets.tracking import sequences
+
+    path = folder / "groundtruth.txt"
+    path.write_text(SEQUENCES[0])
+    (folder / "cover.label").write_text("8\n8\n1\n")
+    sequences._SHORTEST = 1
+    bombs = [each for text in SEQUENCES for each in with_words(text, ABSURD_WORDS)]
+    bombs += [text.encode() for text in SEQUENCES]
+
+    def read() -> None:
+        for truth in sequences.read_truth(path):
+            clip = sequences.PictureSequence("a", [path] * 3, truth)
+            clip.strata(), clip.visible.any()
+        sequences._column(path, 3)
+
+    path.write_text("1\n0\n1\n")
+    return of_bytes(path, read, chance, most, *bombs)
+
+
+@row("sequence facts")
+def _sequence_facts(folder, chance, most):
+    from eyas.datasets.tracking import sequences
+
+    path = folder / "seqinfo.ini"
+    path.write_text("[Sequence]\nframeRate=30\nimDir=img1\n")
+    listed = "'name','a','path','.\\data_seq\\UAV123\\a\\','startFrame',1,'endFrame',9\n"
+
+    def read() -> None:
+        content = path.read_bytes()
+        (folder / "sequence").write_bytes(content)
+        sequences._rate_of(folder)
+        (folder / "configSeqs.m").write_bytes(listed.encode() + content)
+        sequences._uav123_parts([folder / "configSeqs.m"])
+
+    return of_bytes(path, read, chance, most, listed.encode(), b"fps=1e999", refuses=False)
+
+
+@row("film")
+def _film(folder, chance, most):
+    import av
+
+    from eyas.datasets.tracking.sequences import sequences_in
+
+    path = folder / "a.mp4"
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream("mpeg4", rate=10)
+        stream.width, stream.height = 64, 48
+        for _ in range(4):
+            frame = av.VideoFrame.from_ndarray(np.zeros((48, 64, 3), np.uint8))
+            container.mux(stream.encode(frame))
+        container.mux(stream.encode())
+
+    def read() -> None:
+        for each in sequences_in(path, box=(1.0, 2.0, 3.0, 4.0)):
+            for _ in each.pictures():
+                pass
+
+    return of_bytes(path, read, chance, most)
 
 
 @row("checkpoint")
