@@ -395,7 +395,7 @@ def _mask_box(row: str, where: str) -> list[float]:
         left, top, width, height, *runs = (int(cell) for cell in row.split(","))
         if not (0 <= width * height <= 1 << 26 and 0 <= sum(runs) <= width * height):
             raise ValueError
-        if min((*runs, 0)) < 0:
+        if min((*runs, 0)) < 0 or max(abs(left), abs(top)) > 10_000_000:
             raise ValueError
     except ValueError:
         raise DataFileError(f"{where}: {row!r:.60} is not a mask of VOT") from None
