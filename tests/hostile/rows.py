@@ -396,6 +396,65 @@ def _trajectory(folder, chance, most):
     return of_bytes(path, read, chance, most, *with_words(TRACK, ABSURD_WORDS))
 
 
+TRACKS = {
+    "a.gpx": "<gpx><trk><trkseg>"
+    + "".join(
+        f"<trkpt lat='51.{k}' lon='0.1'><ele>5</ele><time>2026-05-01T10:00:0{k}Z</time></trkpt>"
+        for k in range(3)
+    )
+    + "</trkseg></trk></gpx>",
+    "a.kml": "<kml><Track><when>2026-05-01T10:00:01Z</when><when>2026-05-01T10:00:02Z</when>"
+    "<coord>0.1 51.5 3</coord><coord>0.2 51.5 3</coord></Track></kml>",
+    "a.kmz": "",
+    "a.geojson": '{"type": "LineString", "coordinates": [[0.1, 51.5, 3], [0.2, 51.5], [0.3, 51]]}',
+    "a.plan": '{"mission": {"items": [{"command": 16, "params": [0, 0, 0, 0, 51.5, 0.1, 9]}, '
+    '{"command": 16, "params": [0, 0, 0, 0, 51.6, 0.1, 9]}]}}',
+    "a.waypoints": "QGC WPL 110\n0 1 0 16 0 0 0 0 1 2 3 1\n1 0 3 16 0 0 0 0 51 0.1 9 1\n"
+    "2 0 3 16 0 0 0 0 52 0.1 9 1\n",
+    "a.tum": "1 2 3 4 0 0 0 1\n2 2 4 4 0 0 0 1\n3 2 5 4 0 0 0 1\n",
+}
+
+
+def _of_tracks(name: str, content: bytes):
+    def make(folder, chance, most):
+        from eyas.engine.custom.tracks import Placement, on_map
+
+        path = folder / name
+        path.write_bytes(content)
+
+        def read() -> None:
+            for _, each in on_map([path], Placement("here", None, (0.0, 0.0, 0.5), 2.0)):
+                each.at(np.linspace(0.0, each.time[-1], 50))
+
+        bombs = [gzip.compress(bytes(BOMB))]
+        if name in TRACKS:
+            bombs += with_words(TRACKS[name], ABSURD_WORDS)
+        if name == "a.kmz":
+            bombs = [zipped(b"doc.kml", bytes(BOMB))]
+        return of_bytes(path, read, chance, most, *bombs)
+
+    return make
+
+
+def zipped(name: bytes, content: bytes) -> bytes:
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as file:
+        file.writestr(name.decode(), content)
+    return archive.getvalue()
+
+
+def _add_tracks() -> None:
+    sys.path.insert(0, str(Path(__file__).parents[1] / "kit"))
+    from flight_logs import ardupilot_flight, px4_flight
+
+    made = {name: text.encode() for name, text in TRACKS.items()}
+    made["a.kmz"] = zipped(b"doc.kml", made["a.kml"])
+    made |= {"a.ulg": px4_flight(), "a.bin": ardupilot_flight()}
+    ROWS.update({name: _of_tracks(name, content) for name, content in made.items()})
+
+
+_add_tracks()
+
 OBJ = """mtllib a.mtl
 v 0 0 0
 v 1 0 0

@@ -1,5 +1,6 @@
 """Targets of one's own, from the settings to the picture."""
 
+import math
 import sys
 from pathlib import Path
 
@@ -411,3 +412,22 @@ def test_check_tells_whether_a_target_can_be_used(tmp_path: Path, monkeypatch: p
     assert check(str(aloft), settings, "citystreet")[0][0].startswith("note: it is up to 500 m ab")
     with pytest.raises(UnknownNameError, match="did you mean 'Mantis'"):
         check("Mantes", settings, "citystreet")
+
+
+def test_a_convoy_of_tracks_drives_as_they_did(tmp_path: Path):
+    files = []
+    for name, second in (("a", 0.0), ("b", 2.0)):
+        path = tmp_path / f"{name}.csv"
+        rows = (f"{1.7e9 + second + k},{2.0 * k},0\n" for k in range(40))
+        path.write_text("time,x,y\n" + "".join(rows))
+        files.append(str(path))
+    custom = {"trajectory": files, "at": (10.0, 20.0, math.pi / 2), "body": "BB-8"}
+    sampled = begun(custom=custom).traffic.motion.sampled()
+    table, rate = sampled.table, round(sampled.rate)
+    first, second = table[:, 0], table[:, 2]
+    assert first["present"][:rate].all()
+    assert not second["present"][: 2 * rate].any()
+    assert second["present"][2 * rate : 5 * rate].all()
+    np.testing.assert_allclose(first["x"][: 5 * rate], 10.0, atol=1e-6)  # turned to the north
+    np.testing.assert_allclose(first["y"][5 * rate], 20.0 + 10.0, atol=0.05)
+    np.testing.assert_allclose(second["y"][5 * rate], 20.0 + 6.0, atol=0.05)

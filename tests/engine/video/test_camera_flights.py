@@ -11,6 +11,7 @@ from eyas.engine.sim.flights.plan import LIMITS
 from eyas.engine.sim.flights.registry import PATHS, path_named
 from eyas.engine.sim.worlds import each_alone
 from eyas.engine.video.camera_flights import CameraFlights
+from eyas.engine.video.logged_flights import LoggedFlight
 from eyas.engine.video.run import recording_rules
 
 STEPS = 1500
@@ -109,3 +110,28 @@ def test_a_path_of_ones_own(tmp_path, monkeypatch):
     assert np.ptp(place[..., 2]) < 3.0
     with pytest.raises(ConfigError, match=r"^video.flight: 'own_paths:Half' .* no 'sketch'"):
         path_named("own_paths:Half")
+
+
+def test_the_flight_of_a_log_is_flown_again_over_the_ground(tmp_path):
+    path = tmp_path / "flight.csv"
+    rows = (f"{k},{100 + 5 * k},{40 + 2 * k},{7 + k}\n" for k in range(10))
+    path.write_text("t,x,y,z\n" + "".join(rows))
+    video = {"flight": str(path), "start_time": 1.0, "warm_up_steps": 0}
+    config = updated(EyasConfig(), {"video": video, "start": {"pitch": 0.9}})
+    sim = build_simulation(recording_rules(config), each_alone(1))
+    flights = CameraFlights(sim, config, LoggedFlight(path, sim, config))
+    sim.reset()
+    sim.snapshot.episodes.tick[:] = 500  # the first frame is now
+    flights.begin(np.arange(1), 3000)
+    places = []
+    for _ in range(3000):
+        flights.move()
+        places.append(sim.snapshot.trackers.position[0].copy())
+    places = np.array(places)
+    time = 0.002 * np.arange(1, 3001)
+    # Nothing is before the first point: the spline needs one step to leave it.
+    np.testing.assert_allclose(places[20:, 0], 100 + 5 * time[20:], atol=0.02)
+    np.testing.assert_allclose(places[20:, 1], 40 + 2 * time[20:], atol=0.02)
+    np.testing.assert_allclose(places[1000:, 2], time[1000:], atol=0.02)  # 7 m is the ground here
+    assert places[:, 2].min() >= 0.99
+    assert float(sim.snapshot.trackers.commanded_gimbal[0, 0]) == pytest.approx(0.9)

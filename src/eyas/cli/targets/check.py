@@ -21,10 +21,13 @@ from eyas.engine.custom.problems import (
     of_trajectory,
 )
 from eyas.engine.custom.shape import simplified
-from eyas.engine.custom.trajectory import Trajectory, read_trajectory
+from eyas.engine.custom.tracks import Placement, endings, is_track, on_map
+from eyas.engine.custom.trajectory import Trajectory
 from eyas.engine.custom.user_class import posed, tracks_of
 from eyas.engine.sim.scenes import load_scene
 from eyas.engine.targets.catalogue import KINDS, MODELS
+from eyas.engine.world.maps import MAPS
+from eyas.engine.world.maps.place import projection_of
 
 _SECONDS = 60  # Time for which a motion of one's own is tried [s]
 
@@ -56,14 +59,15 @@ def _findings(what: str, config: CustomConfig, map_name: str) -> Iterator[Findin
     path, own = user_path(what), as_custom(what, config)
     if own is not None and own.mesh is not None:
         yield from _mesh(own)
-    elif path.suffix.lower() == ".csv":
-        yield from _trajectory(path, map_name)
+    elif is_track(path):
+        yield from _trajectories(path, config, map_name)
     elif own is not None:
         yield from _class(what, map_name)
     else:
         names = dict.fromkeys([*(kind.name for kind in KINDS), *(model.name for model in MODELS)])
         if what not in names:
-            others = f"(nor a file {', '.join(ENDINGS)}, .csv, nor 'package.module:Class')"
+            files = ", ".join((*ENDINGS, *endings()))
+            others = f"(nor a file {files}, nor 'package.module:Class')"
             raise UnknownNameError("target", what, names, others)
 
 
@@ -86,19 +90,20 @@ def _mesh(config: CustomConfig) -> Iterator[Finding]:
     )
 
 
-def _trajectory(path: Path, map_name: str) -> Iterator[Finding]:
-    trajectory = read_trajectory(path)
+def _trajectories(path: Path, config: CustomConfig, map_name: str) -> Iterator[Finding]:
     scene = load_scene(map_name)
-    yield from of_trajectory(trajectory, scene.size, map_name)
-    yield from of_height(trajectory, scene)
-    yield from of_noise(trajectory)
-    step = np.hypot(*np.diff(trajectory.position[:, :2], axis=0).T)
-    speed = step / np.diff(trajectory.time)
-    yield Finding(
-        f"{len(trajectory.time)} points in {trajectory.time[-1]:g} s, {step.sum():.0f} m, "
-        f"{speed.max():.1f} m/s at most",
-        fatal=False,
-    )
+    projection = projection_of(MAPS.get(map_name))
+    for _, trajectory in on_map([path], Placement(map_name, projection, config.at, config.speed)):
+        yield from of_trajectory(trajectory, scene.size, map_name)
+        yield from of_height(trajectory, scene)
+        yield from of_noise(trajectory)
+        step = np.hypot(*np.diff(trajectory.position[:, :2], axis=0).T)
+        speed = step / np.diff(trajectory.time)
+        yield Finding(
+            f"{len(trajectory.time)} points in {trajectory.time[-1]:g} s, {step.sum():.0f} m, "
+            f"{speed.max():.1f} m/s at most",
+            fatal=False,
+        )
 
 
 def _class(path: str, map_name: str) -> Iterator[Finding]:

@@ -16,12 +16,14 @@ from eyas.engine.custom.kind import kind_name_of, own_target
 from eyas.engine.custom.own import MovesItself
 from eyas.engine.custom.problems import of_trajectory, worst
 from eyas.engine.custom.smoothing import smoothed
-from eyas.engine.custom.trajectory import read_trajectory
+from eyas.engine.custom.tracks import Placement, on_map
 from eyas.engine.custom.user_class import tracks_of
 from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.state.terrain import reliefs
 from eyas.engine.targets.catalogue import MODELS, kind_index, models_of
 from eyas.engine.targets.habit import Habit
+from eyas.engine.world.maps import MAPS
+from eyas.engine.world.maps.place import projection_of
 from eyas.lanes import exact
 
 _SPAN = 0.25  # Half the distance over which the slope of the ground is taken [m]
@@ -53,7 +55,7 @@ def custom_motion(
     name = kind_name_of(config)
     target = own_target(config) if config.path is not None else None
     if config.trajectory is not None:
-        table = _driven(config.trajectory, config.smoothing, ground, clock)
+        table = _driven(config, ground, clock)
     elif isinstance(target, MovesItself):
         assert config.path is not None  # the target is of that class
         count = int(places.lifetimes.slot.max()) + 1
@@ -81,31 +83,37 @@ def _group(config: CustomConfig, name: str, places: Places) -> ScriptedGroup:
     )
 
 
-def _driven(
-    file: str, smoothing: float, ground: WalkingGround, clock: SampleClock
-) -> NDArray[np.void]:
-    """Return the samples of a trajectory, again and again."""
-    path, scene = user_path(file), ground.scene
+def _driven(config: CustomConfig, ground: WalkingGround, clock: SampleClock) -> NDArray[np.void]:
+    """Return the samples of trajectories, all of them again and again."""
+    scene = ground.scene
+    recipe = MAPS.get(scene.name)
+    placement = Placement(scene.name, projection_of(recipe), config.at, config.speed)
+    files = [user_path(file) for file in config.tracks]
     try:
-        trajectory = read_trajectory(path)
+        bodies = on_map(files, placement)
     except DataFileError as error:
         raise ConfigError(f"custom.trajectory: {error}") from None
-    if problem := worst(of_trajectory(trajectory, scene.size, scene.name)):
-        raise ConfigError(f"custom.trajectory: {path}: {problem}")
-    period = int(trajectory.time[-1] * clock.rate) + 1
-    if period < _FEWEST:
-        raise ConfigError(
-            f"custom.trajectory: {path}: it is shorter than {(_FEWEST - 1) / clock.rate:g} s"
-        )
-    if smoothing > 0.0:
-        trajectory = smoothed(trajectory, smoothing)
-    place, yaw = trajectory.at(np.arange(period) / clock.rate)
-    once = _table(place[:, None], yaw[:, None], ground, clock.rate)[:, 0]
+    period, laps = 0, []
+    for start, trajectory in bodies:
+        if problem := worst(of_trajectory(trajectory, scene.size, scene.name)):
+            raise ConfigError(f"custom.trajectory: {files[0]}: {problem}")
+        first = int(start * clock.rate)
+        count = int(trajectory.time[-1] * clock.rate) + 1
+        if count < _FEWEST:
+            raise ConfigError(
+                f"custom.trajectory: {files[0]}: it is shorter than "
+                f"{(_FEWEST - 1) / clock.rate:g} s"
+            )
+        smooth = smoothed(trajectory, config.smoothing) if config.smoothing > 0.0 else trajectory
+        place, yaw = smooth.at(np.arange(min(count, clock.samples)) / clock.rate)
+        laps.append((first, _table(place[:, None], yaw[:, None], ground, clock.rate)[:, 0]))
+        period = max(period, first + count)
     # Two bodies in turn: one begins when the other ends, so there is always one to be followed.
-    table = np.zeros((clock.samples, 2), SAMPLE)
+    table = np.zeros((clock.samples, 2 * len(laps)), SAMPLE)
     for number, begin in enumerate(range(0, clock.samples - 1, period - 1)):
-        rows = table[begin : begin + period, number % 2]
-        rows[:] = once[: len(rows)]
+        for body, (first, lap) in enumerate(laps):
+            rows = table[begin + first : begin + first + len(lap), 2 * body + number % 2]
+            rows[:] = lap[: len(rows)]
     return table
 
 

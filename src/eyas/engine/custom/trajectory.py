@@ -2,8 +2,12 @@
 
 import csv
 import io
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +20,10 @@ from eyas.lanes import exact
 COLUMNS = ("t", "x", "y", "z", "yaw")  # Names in the first line; z and yaw may be left out
 JUMP = 100.0  # Speed from which on two points are a jump [m/s]
 _LARGEST = 64 << 20  # Largest size of a file [bytes]
-_LIMITS = {"t": 1e19, "x": 1e9, "y": 1e9, "z": 1e9, "yaw": 1e6}
+_LIMITS = {
+    **{"t": 1e19, "x": 1e9, "y": 1e9, "z": 1e9, "yaw": 1e6},
+    **{"latitude": 90.0, "longitude": 180.0},
+}
 """Largest numbers of the columns; times may count from 1970 in any unit."""
 
 _LONGEST = 86_400.0  # Longest trajectory: it is sampled as a whole [s]
@@ -80,60 +87,185 @@ class Trajectory:
         return place, _along(velocity, max(_STANDING, float(swing)))
 
 
+class Track(NamedTuple):
+    """Places of one body as a file has them, before they are on a map."""
+
+    time: Floats | None  # On the file's own clock [s], shape (N,); None: it has none
+    place: Floats
+    """East, north, up [m]; or longitude, latitude [degrees], altitude [m]; shape (N, 3). NaN: the
+    height is not known."""
+    on_earth: bool  # Which of the two
+    yaw: Floats | None = None  # Counter-clockwise from east [rad], shape (N,); None: along the way
+    name: str = ""  # Of several in one file
+
+
+def read_table(path: Path) -> Track:
+    """Return the track of a CSV file, whose columns may have the names that others give them.
+
+    Raises:
+        DataFileError: The file is missing, or has not the columns, or something else than numbers.
+    """
+    text = read_limited(path, _LARGEST).decode("utf-8-sig", errors="replace")
+    delimiter = _delimiter(text)
+    try:
+        # Also lines that end with a carriage return, as some spreadsheets write them.
+        lines = list(csv.reader(io.StringIO(text, newline=None), delimiter=delimiter))
+    except csv.Error as error:  # a quotation mark that is never closed
+        raise DataFileError(f"{path}: not a CSV file: {error}") from None
+    named = [_column(name) for name in lines[0]] if lines else []
+    names = [name for name, _ in named]
+    on_earth = "latitude" in names or "longitude" in names
+    needed = ("t", "latitude", "longitude") if on_earth else COLUMNS[:3]
+    missing = [name for name in needed if name not in names]
+    if missing:
+        there = shown(",".join(lines[0] if lines else []))
+        raise DataFileError(
+            f"{path}: line 1: no column '{missing[0]}' in {there}; allowed: t,x,y and perhaps "
+            "z,yaw; or t,latitude,longitude"
+        )
+    for name in COLUMNS:
+        if names.count(name) > 1:
+            raise DataFileError(f"{path}: line 1: two columns are '{name}'")
+    wanted = [(k, name) for k, name in enumerate(names) if name in _LIMITS]
+    rows = [
+        _numbers(path, k, line, len(names), wanted, decimal_comma=delimiter == ";")
+        for k, line in enumerate(lines[1:], 2)
+        if any(cell.strip() for cell in line)
+    ]
+    values = np.array(rows, np.float64).reshape(-1, len(wanted))
+    column = {name: values[:, k] for k, (_, name) in enumerate(wanted)}
+    time = column["t"] * dict(named)["t"]
+    time = time * _epoch_unit(time)
+    level = np.full(len(time), np.nan)
+    if on_earth:
+        places = (column["longitude"], column["latitude"], column.get("z", level))
+    else:
+        places = (column["x"], column["y"], column.get("z", level))
+    yaw = None
+    if "yaw" in column and not on_earth:
+        yaw = np.unwrap(column["yaw"])
+    return Track(time, np.column_stack(places), on_earth, yaw)
+
+
 def read_trajectory(path: Path) -> Trajectory:
-    """Return the trajectory of a CSV file; its first time becomes 0.
+    """Return the trajectory of a CSV file in metres of the map; its first time becomes 0.
 
     Raises:
         DataFileError: The file is missing, or does not hold a trajectory: time runs backwards, a
             number is missing, not finite or absurd, or it lasts longer than a day.
     """
-    text = read_limited(path, _LARGEST).decode("utf-8-sig", errors="replace")
-    try:
-        # Also lines that end with a carriage return, as some spreadsheets write them.
-        lines = list(csv.reader(io.StringIO(text, newline=None)))
-    except csv.Error as error:  # a quotation mark that is never closed
-        raise DataFileError(f"{path}: not a CSV file: {error}") from None
-    names = [name.strip() for name in lines[0]] if lines else []
-    missing = [name for name in COLUMNS[:3] if name not in names]
-    if missing:
-        raise DataFileError(
-            f"{path}: line 1: no column '{missing[0]}' in {shown(','.join(names))}; allowed: "
-            "t,x,y and perhaps z,yaw"
-        )
-    rows = [_numbers(path, k, line, names) for k, line in enumerate(lines[1:], 2) if line]
-    values = np.array(rows, np.float64).reshape(-1, len(names))
-    if len(values) < 2:
-        raise DataFileError(f"{path}: {len(values)} points; a trajectory has two or more")
-    column = {name: values[:, k] for k, name in enumerate(names)}
-    time = column["t"]
+    track = read_table(path)
+    assert track.time is not None  # a table has times
+    return trajectory_of(path, track.time, track.place, track.yaw)
+
+
+def trajectory_of(path: Path, time: Floats, position: Floats, yaw: Floats | None) -> Trajectory:
+    """Return places in metres of the map as a trajectory; its first time becomes 0.
+
+    Raises:
+        DataFileError: There are fewer than two, time runs backwards, or it lasts longer than a day.
+    """
+    if len(time) < 2:
+        raise DataFileError(f"{path}: {len(time)} points; a trajectory has two or more")
     back = np.flatnonzero(np.diff(time) <= 0.0)
     if len(back):
         k = int(back[0])
         raise DataFileError(
-            f"{path}: point {k + 2}: t is {time[k + 1]:g} after {time[k]:g}: time must increase"
+            f"{path}: point {k + 2}: t is {time[k + 1]:.12g} after {time[k]:.12g}: time must "
+            "increase"
         )
     if time[-1] - time[0] > _LONGEST:
         raise DataFileError(
-            f"{path}: it lasts {time[-1] - time[0]:.6g} s; allowed: up to {_LONGEST:g} s: is t in "
-            "milliseconds? it is in seconds"
+            f"{path}: it lasts {time[-1] - time[0]:.6g} s; allowed: up to {_LONGEST:g} s"
+            + (": is t in milliseconds? it is in seconds" if path.suffix == ".csv" else "")
         )
-    z = column.get("z", np.full(len(time), np.nan))
-    yaw = np.unwrap(column["yaw"]) if "yaw" in column else None
-    return Trajectory(time - time[0], np.column_stack([column["x"], column["y"], z]), yaw)
+    return Trajectory(time - time[0], position, yaw)
 
 
-def _numbers(path: Path, number: int, line: list[str], names: list[str]) -> list[float]:
+_SYNONYMS = {
+    "t": "t time timestamp stamp sec secs second seconds datetime date_time utc time_utc elapsed",
+    "x": "x east e pos_x position_x px tx x_position",
+    "y": "y north n pos_y position_y py ty y_position",
+    "z": "z up alt altitude height ele elevation pos_z position_z pz tz",
+    "yaw": "yaw",
+    "latitude": "latitude lat",
+    "longitude": "longitude lon lng long",
+}
+"""Names of columns, in small letters, without units."""
+
+_NAMED = {each: name for name, several in _SYNONYMS.items() for each in several.split()}
+_UNITS = {"ns": 1e-9, "us": 1e-6, "µs": 1e-6, "ms": 1e-3, "s": 1.0}
+
+
+def _column(name: str) -> tuple[str, float]:
+    """Return our name of a column, and the factor of a time to seconds."""
+    plain = name.strip().strip("\"'").lower()
+    unit = re.search(r"[\[(]\s*([a-zµ]+)\s*[\])]$|_([a-zµ]+)$", plain)
+    stem = re.sub(r"\s*[\[(].*[\])]$", "", plain).strip().replace(" ", "_")
+    factor = _UNITS.get((unit[1] or unit[2]) if unit else "", 0.0)
+    if stem not in _NAMED and factor and "_" in stem:
+        stem = stem.rpartition("_")[0]
+    return _NAMED.get(stem, stem), factor or 1.0
+
+
+def _delimiter(text: str) -> str:
+    first = text.partition("\n")[0]
+    return max(",;\t", key=first.count)  # a comma, if there is none
+
+
+def _epoch_unit(time: Floats) -> float:
+    """Return the factor to seconds of times that count from 1970 in smaller units."""
+    start = float(time[0]) if len(time) else 0.0
+    # In seconds these limits are in the year 5138 and later.
+    return next((factor for least, factor in _EPOCHS if start > least), 1.0)
+
+
+_EPOCHS = ((1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3))
+
+
+def _number(cell: str, name: str, *, decimal_comma: bool) -> float:
+    if decimal_comma:
+        cell = cell.replace(",", ".")
     try:
-        values = [float(text) for text in line]
+        return float(cell)
     except ValueError:
+        if name != "t":
+            raise
+    return datetime_seconds(cell)
+
+
+def datetime_seconds(text: str) -> float:
+    """Return the seconds since 1970 of a time in ISO 8601; without a zone it is taken as UTC.
+
+    Raises:
+        ValueError: It is no such time.
+    """
+    when = datetime.fromisoformat(text.strip().replace("/", "-"))
+    return (when if when.tzinfo else when.replace(tzinfo=UTC)).timestamp()
+
+
+def _numbers(
+    path: Path,
+    number: int,
+    line: list[str],
+    count: int,
+    wanted: Sequence[tuple[int, str]],
+    *,
+    decimal_comma: bool,
+) -> list[float]:
+    """Return the wanted cells of a line; others may hold anything."""
+    try:
+        if len(line) != count:
+            raise ValueError
+        values = [_number(line[k], name, decimal_comma=decimal_comma) for k, name in wanted]
+    except (ValueError, OverflowError):
         values = []
-    if len(values) != len(names) or not np.isfinite(values).all():
+    if not values or not np.isfinite(values).all():
         raise DataFileError(
-            f"{path}: line {number}: {shown(','.join(line))} is not allowed: {len(names)} finite "
-            "numbers"
+            f"{path}: line {number}: {shown(','.join(line))} is not allowed: {count} finite numbers"
         )
-    for name, value in zip(names, values, strict=True):
-        if abs(value) > _LIMITS.get(name, np.inf):
+    for (_, name), value in zip(wanted, values, strict=True):
+        if abs(value) > _LIMITS[name]:
             raise DataFileError(
                 f"{path}: line {number}: {name} = {value:g} is not allowed: up to {_LIMITS[name]:g}"
             )

@@ -7,6 +7,8 @@ from pydantic import AfterValidator, Field, model_validator
 from eyas.engine.core.named_code import NAMES_CODE
 from eyas.engine.settings.env import ActionSpeeds
 
+Metres = Annotated[float, Field(ge=-1e5, le=1e5)]
+Turn = Annotated[float, Field(ge=-7, le=7)]
 ShareAsked = Annotated[float, Field(ge=0, le=1)] | None
 
 
@@ -38,8 +40,12 @@ class VideoConfig(ActionSpeeds):
     """Flight of the trackers. `exact`: they keep their place relative to the target, so that its
     box never moves; `random`: seeded random actions; a camera path, which is planned around each
     target: `follow`, `orbit`, `fly-by`, `rise`, `zoom`, `hover-and-pan`, `search`, or your own as
-    `my_package.module:Class`. None: `follow`, or `exact` where no camera path can be flown, with
+    `my_package.module:Class`; or a file with the flight of a real drone, in the forms of
+    `custom.trajectory`. None: `follow`, or `exact` where no camera path can be flown, with
     live traffic and trackers that are not drones."""
+    flight_at: tuple[Metres, Metres, Turn] | None = None
+    """Where the first point of a flight from a file is put, x and y [m], and the angle by which it
+    is turned about it [rad]; None: where the file says."""
     policy: Annotated[Annotated[str, Field(min_length=1)] | None, NAMES_CODE] = None
     """A policy that flies instead, as in `eyas evaluate --policy`; excludes `flight`."""
     in_view: ShareAsked = None

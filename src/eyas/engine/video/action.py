@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 from eyas.engine.core.clock import physics_steps
 from eyas.engine.core.doors import first_brought
 from eyas.engine.core.errors import ActionError, ConfigError, UnknownNameError
+from eyas.engine.core.files import user_path
 from eyas.engine.core.rng import stream
+from eyas.engine.custom.tracks import endings, is_track, tracks_in
 from eyas.engine.envs.actions import action_table, command_width, make_actions, turn_rates
 from eyas.engine.envs.observation import Observation, Observer
 from eyas.engine.exports.frame import RecordedAction
@@ -24,6 +26,7 @@ from eyas.engine.trackers.config import TrackerKind
 from eyas.engine.trackers.gimbal_command import WIDTH
 from eyas.engine.traffic.config import Source
 from eyas.engine.video.camera_flights import CameraFlights
+from eyas.engine.video.logged_flights import LoggedFlight
 
 # Flies the trackers of a recording by a policy of `eyas evaluate`.
 
@@ -224,8 +227,14 @@ def check_flight(config: EyasConfig) -> None:
     if config.video.policy is not None or flight_of(config) in (_EXACT, _RANDOM):
         return
     flight = flight_of(config)
+    if is_track(user_path(flight)):
+        if why := _no_path(config):
+            raise ConfigError(f"{SETTING}: {flight!r} is not possible with {why}")
+        tracks_in(user_path(flight))  # raises before anything is built
+        return
     if flight not in PATHS.names() and ":" not in flight:
-        raise UnknownNameError(SETTING, flight, (_EXACT, _RANDOM, *PATHS.names()))
+        known = (_EXACT, _RANDOM, *PATHS.names())
+        raise UnknownNameError(SETTING, flight, known, others=f"a file {', '.join(endings())}")
     path_named(flight)
     if why := _no_path(config):
         raise ConfigError(
@@ -256,5 +265,7 @@ def mover_of(config: EyasConfig, sim: Simulation) -> Mover:
             return Exact(sim)
         case "random":
             return RandomActions(sim, config)
+        case path if is_track(file := user_path(path)):
+            return CameraFlights(sim, config, LoggedFlight(file, sim, config))
         case path:
             return CameraFlights(sim, config, path_named(path))

@@ -16,6 +16,7 @@ from eyas.engine.sim.flights.plan import FlightPlan, FlightSurroundings, Wishes,
 from eyas.engine.sim.flights.shares import Asked
 from eyas.engine.sim.flights.signals import STEP, sampled_at
 from eyas.engine.sim.simulation import Simulation
+from eyas.engine.video.logged_flights import LoggedFlight
 from eyas.lanes import exact
 
 Floats = NDArray[np.float64]
@@ -44,11 +45,17 @@ class _Flown(NamedTuple):
 class CameraFlights:
     """Trackers on camera paths, each planned at the start of its episode."""
 
-    def __init__(self, sim: Simulation, config: EyasConfig, path: CameraPath) -> None:
+    def __init__(
+        self, sim: Simulation, config: EyasConfig, path: CameraPath | LoggedFlight
+    ) -> None:
         video, camera = config.video, config.camera
         shares = Asked(video.in_view, video.hidden, video.cut, video.small)
         self._sim, self._seed = sim, config.seed
-        self._wishes = Wishes(path, config.start.height, config.start.pitch, shares)
+        self._path = path
+        self._moved = 0  # Steps so far
+        self._lead: float | None = None  # Time before the first frame [s], when it is known
+        self._start = config.start
+        self._shares = shares
         self._picture = camera.width, camera.height
         self._start_time, self._warm_up_steps = video.start_time, video.warm_up_steps
         self._flown: list[_Flown | None] = [None] * sim.count
@@ -58,10 +65,10 @@ class CameraFlights:
     def begin(self, trackers: NDArray[np.int64], longest: int) -> None:
         """Plan the flights of these trackers, and put them where they begin."""
         for tracker in trackers.tolist():
-            plan = self._planned(tracker, longest)
             begun = int(self._sim.snapshot.episodes.tick[tracker])
-            self._flown[tracker] = _Flown(plan.points, begun)
-            self._now[tracker, _SAMPLED] = sampled_at(plan.points, np.zeros(1))[0]
+            points = self._points(tracker, longest)
+            self._flown[tracker] = _Flown(points, begun)
+            self._now[tracker, _SAMPLED] = sampled_at(points, np.zeros(1))[0]
         self._sim.start_at(trackers, self._now[trackers, _POSE], self._now[trackers, 4])
         self._compute(trackers.tolist())
 
@@ -71,6 +78,7 @@ class CameraFlights:
             self._next = np.zeros((_BLOCK, *self._now.shape))
             self._compute(range(self._sim.count))
         self._before, self._now, self._next = self._now, self._next[0], self._next[1:]
+        self._moved += 1
         self._sim.command_gimbal(self._now[:, _ANGLES])
         self._sim.set_fields_of_view(self._now[:, _FIELD])
         self._sim.place(self._now[:, _POSE])
@@ -93,9 +101,22 @@ class CameraFlights:
         command = [ahead / PHYSICS_STEP, left / PHYSICS_STEP, up, turn / PHYSICS_STEP]
         return RecordedAction(-1, np.array(command))
 
-    def _planned(self, tracker: int, longest: int) -> FlightPlan:
-        episodes, targets = self._sim.snapshot.episodes, self._sim.snapshot.targets
+    def _points(self, tracker: int, longest: int) -> Floats:
+        """Return the control points of a tracker's flight."""
         count = -(-longest // _STEP_TICKS) + _MORE
+        if not isinstance(self._path, LoggedFlight):
+            wishes = Wishes(self._path, self._start.height, self._start.pitch, self._shares)
+            return self._planned(tracker, wishes, count).points
+        number = int(self._sim.snapshot.episodes.number[tracker])
+        lens = float(self._sim.snapshot.cameras.field_of_view[tracker])
+        if self._lead is None:
+            self._lead = (self._unseen(tracker) - 1) * STEP
+        # The log begins with the first frame, and goes on through all episodes.
+        since = self._moved * PHYSICS_STEP - self._lead
+        return self._path.points(tracker, number, since, count, lens)
+
+    def _planned(self, tracker: int, wishes: Wishes, count: int) -> FlightPlan:
+        episodes, targets = self._sim.snapshot.episodes, self._sim.snapshot.targets
         target, heading, ground = self._course(tracker, count)
         around = FlightSurroundings(
             target,
@@ -109,7 +130,7 @@ class CameraFlights:
             self._unseen(tracker),
         )
         rng = stream(self._seed, "flight", tracker, int(episodes.number[tracker]))
-        return plan_flight(around, self._wishes, rng)
+        return plan_flight(around, wishes, rng)
 
     def _unseen(self, tracker: int) -> int:
         """Return the number of control points before the first frame of an episode."""

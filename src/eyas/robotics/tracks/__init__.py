@@ -1,0 +1,1 @@
+"""Tracks of others: phones and receivers, odometry, logs of flight controllers, missions."""
