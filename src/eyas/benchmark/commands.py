@@ -348,6 +348,37 @@ def list_policies(*, as_json: AsJson = False) -> None:
     typer.echo("What a trained policy reaches: eyas policies card NAME")
 
 
+@policies.command("adapt")
+def adapt_policy(
+    network: Annotated[Path, typer.Argument(help="An ONNX file of any other tool.")],
+    out: Annotated[Path, to_write("File to write: the network, and what it takes.")],
+    name: Annotated[
+        str | None, typer.Option("--input", help="Name of the input that is the picture.")
+    ] = None,
+    output: Annotated[
+        str | None, typer.Option("--output", help="Name of the output that is the action.")
+    ] = None,
+    scale: Annotated[
+        str | None,
+        typer.Option(
+            "--scale", help="Numbers of the picture: bytes, unit (0 to 1), signed, imagenet."
+        ),
+    ] = None,
+    swapped: Annotated[
+        bool, typer.Option("--swapped", help="Blue comes first, as in OpenCV's pictures.")
+    ] = False,
+    set_: _Changes = None,
+) -> None:
+    """Write how a network of others is fed into its file, so that every command can fly it."""
+    from eyas.benchmark.policies.foreign import adapt
+
+    said = {"input": name, "output": output, "scale": scale, "swapped": swapped}
+    changes = _changes(set_ or [])
+    if changes.keys() - {"env"}:
+        raise ConfigError("--set: only settings of env belong to a network")
+    typer.echo(f"{out}: {adapt(network, out, said, changes.get('env', {}))}")
+
+
 @policies.command("card")
 def policy_card(
     name: Annotated[str, typer.Argument(help="Name of a trained policy: see 'list'.")],

@@ -90,7 +90,9 @@ def track(
     tracker: Annotated[
         str,
         typer.Option(
-            "--tracker", help="csrt, kcf, mosse, medianflow, nano, stay, or package.module:Class."
+            "--tracker",
+            help="csrt, kcf, mosse, medianflow, nano, stay, a detector's .onnx file, or "
+            "package.module:Class.",
         ),
     ],
     out: Annotated[
@@ -133,7 +135,7 @@ def track(
     refuse_both(resume=resume, overwrite=overwrite)
     if plots:
         require_matplotlib()  # not only when all is tracked
-    name = tracker.rpartition(":")[2].lower()
+    name = Path(tracker.rpartition(":")[2]).stem.lower()
     folder = out or Path("runs/track") / f"{recording.resolve().name}-{name}"
     results = run(
         Scoring(

@@ -113,7 +113,7 @@ BOX_TRACKERS = (*_OF_OPENCV, "nano", "stay")  # Names of all
 
 
 def box_tracker(
-    said: str,  # A name of `BOX_TRACKERS`, or `package.module:Class`
+    said: str,  # A name of `BOX_TRACKERS`, a detector's `.onnx`, or `package.module:Class`
     setting: str = "--tracker",  # What names it, for messages
 ) -> Callable[[], BoxTracker]:
     """Return what makes a box tracker for a sequence.
@@ -125,8 +125,14 @@ def box_tracker(
         return _Stay
     if said in BOX_TRACKERS:
         return _opencv(said)
+    if said.endswith(".onnx"):
+        from eyas.benchmark.policies.detections import detector_tracker
+
+        return detector_tracker(Path(said))
     if ":" not in said:
-        raise UnknownNameError(setting, said, BOX_TRACKERS, others="package.module:Class")
+        raise UnknownNameError(
+            setting, said, BOX_TRACKERS, others="FILE.onnx, package.module:Class"
+        )
     try:
         found: Any = imported(said, setting)
     except ImportError as error:

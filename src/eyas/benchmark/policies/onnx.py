@@ -15,7 +15,8 @@ The metadata `eyas` holds JSON: changes of the defaults of `env`, such as `{"obs
 48, "height": 48, "layout": "chw", "frames": 1}, "actions": "discrete", "action_repeat": 4}`.
 
 A network with the input `expected` is that of a tracker, see `eyas.benchmark.policies.tracker`;
-one with the output `vehicles` that of a listener, see `eyas.benchmark.policies.listener`.
+one with the output `vehicles` that of a listener, see `eyas.benchmark.policies.listener`; one
+without the input `image` that of somebody else, see `eyas.benchmark.policies.foreign`.
 """
 
 from collections.abc import Mapping
@@ -26,14 +27,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.benchmark.policies.action_choice import Chooser
+from eyas.benchmark.policies.detections import is_detector
+from eyas.benchmark.policies.foreign import ADAPTER, ForeignPolicy
 from eyas.benchmark.policies.listener.detector import VehicleDetector
 from eyas.benchmark.policies.listener.listener import Listener
+from eyas.benchmark.policies.own_policy import pilot
 from eyas.benchmark.policies.simple import HOVER
 from eyas.benchmark.policies.tracker.detector import Detector, Session
 from eyas.benchmark.policies.tracker.metadata import METADATA, TRACKER, metadata
 from eyas.benchmark.policies.tracker.tracker import Tracker
 from eyas.engine.core.errors import ConfigError, DataFileError, MissingExtraError
-from eyas.engine.policies.policy import Decision, PolicyInput, Start, env_config, settings_in
+from eyas.engine.policies.policy import (
+    Decision,
+    Policy,
+    PolicyInput,
+    Start,
+    env_config,
+    settings_in,
+)
 from eyas.engine.targets.grammar.attributes import ATTRIBUTES
 
 __all__ = ["METADATA", "OnnxPolicy", "load_onnx"]
@@ -104,25 +115,41 @@ class OnnxPolicy:
         return Decision(actions)
 
 
-def load_onnx(
-    path: Path, changes: Mapping[str, Any], *, sampled: bool
-) -> OnnxPolicy | Tracker | Listener:
-    """Return the policy in a file, see `OnnxPolicy`, `Tracker` and `Listener`.
+def load_onnx(path: Path, changes: Mapping[str, Any], *, sampled: bool) -> Policy:
+    """Return the policy in a file, see `OnnxPolicy`, `ForeignPolicy`, `Tracker` and `Listener`; a
+    detector becomes a box tracker with a controller.
 
     Raises:
         EyasError: The file does not hold one, or changes do not fit it.
     """
-    session = _session(path)
+    session = open_session(path)
     make = Tracker if Detector.fits(session) else Listener
     if make is Listener and not VehicleDetector.fits(session):
-        return OnnxPolicy(path, session, changes, sampled=sampled)
+        if is_detector(session) and not sampled:
+            return pilot(str(path), changes)
+        ours = _is_ours(session)
+        return (OnnxPolicy if ours else ForeignPolicy)(path, session, changes, sampled=sampled)
     if sampled:
         raise ConfigError(f"--sample: not allowed for '{path.stem}': it has no scores of actions")
     said, own = (metadata(path, session, name) for name in (METADATA, TRACKER))
     return make(path, session, settings_in(path, f"metadata '{METADATA}'", said), own, changes)
 
 
-def _session(path: Path) -> Any:  # noqa: ANN401  # onnxruntime has no types
+def _is_ours(session: Session) -> bool:
+    """Return whether a network has the inputs of `OnnxPolicy`."""
+    described = session.get_modelmeta().custom_metadata_map
+    image = [each for each in session.get_inputs() if each.name == _IMAGE]
+    if ADAPTER in described or not image:
+        return False
+    return METADATA in described or image[0].type == "tensor(uint8)"
+
+
+def open_session(path: Path) -> Any:  # noqa: ANN401  # onnxruntime has no types
+    """Return a network, ready to run.
+
+    Raises:
+        EyasError: It is none, or onnxruntime is not installed.
+    """
     try:
         import onnxruntime
     except ImportError as error:
