@@ -4,8 +4,8 @@ Where a file does not say more, its picture is the only input with three axes be
 or NHWC, 1, 3, or several times so many channels (the newest last), uint8 from 0 to 255, other
 numbers from 0 to 1. Seven outputs are the scores of the seven actions, four are shares of the
 speeds; eleven and six the same with the camera's; whole numbers without an axis beside the batch
-are actions already. The metadata under the key `ADAPTER` say otherwise (`eyas policies adapt`), those
-under `eyas` are the settings of `env` as always.
+are actions already. The metadata under the key `ADAPTER` say otherwise (`eyas policies adapt`),
+those under `eyas` are the settings of `env` as always.
 """
 
 import json
