@@ -64,6 +64,8 @@ def places() -> Iterator[str]:
 
 
 READERS = {
+    "cli.bring:_json": "json",
+    "engine.camera.calibration:read_calibration": "calibration",
     "engine.core.decoding:decoded_arrays": "network",
     "engine.core.decoding:decoded_json": "json",
     "engine.core.decoding:_opened": "any picture",

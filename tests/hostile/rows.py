@@ -881,6 +881,30 @@ def _sequence_facts(folder, chance, most):
     return of_bytes(path, read, chance, most, listed.encode(), b"fps=1e999", refuses=False)
 
 
+CALIBRATION = (
+    "image_width: 640\nimage_height: 480\n"
+    "k:\n- 500.0\n- 0\n- 320\n- 0\n- 500\n- 240\n- 0\n- 0\n- 1\n"
+    "d: [0.1, 0.2, 0.0, 0.0, 0.1]\n"
+)
+
+
+@row("calibration")
+def _calibration(folder, chance, most):
+    from eyas.engine.camera.calibration import read_calibration
+    from eyas.engine.camera.config import CameraConfig
+    from eyas.engine.core.config import validated
+
+    path = folder / "camera.yaml"
+    path.write_text(CALIBRATION)
+
+    def read() -> None:
+        validated(CameraConfig, read_calibration(path)[0], "camera")
+
+    slow = b"camera_matrix: " * 20000 + b"k:" + b" -1" * 20000
+    bombs = with_words(CALIBRATION, ABSURD_WORDS)
+    return of_bytes(path, read, chance, most, slow, *bombs)
+
+
 @row("film")
 def _film(folder, chance, most):
     import av

@@ -10,6 +10,7 @@ HOUSE = House(
             "run": "eyas.cli.runs:run",
             "serve": "eyas.cli.runs:serve",
             "targets": "eyas.cli.targets.commands:app",
+            "bring": "eyas.cli.tools:bring",
             "config": "eyas.cli.tools:config_app",
             "cache": "eyas.cli.tools:cache_app",
             "bench": "eyas.cli.tools:bench",

@@ -86,6 +86,37 @@ config_app = typer.Typer(help="Show and convert settings.", no_args_is_help=True
 def _config_group() -> None: ...
 
 
+def bring(
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILE...", help="Files or folders of any other tool.")
+    ],
+    out: Annotated[
+        Path | None, to_write("Settings file to write, of a calibrated camera; then --config FILE.")
+    ] = None,
+) -> None:
+    """Look at files of others: what they are, what is left out, what makes them usable.
+
+    Maps, tracks, shapes, policies, networks, sequences, films, calibrations, settings. The exit
+    code is 1 if none can be used.
+    """
+    from eyas.cli.bring import Brought, lines
+    from eyas.cli.bring import bring as brought_files
+    from eyas.engine.core.errors import ConfigError
+    from eyas.engine.core.files import write_atomic
+
+    found = brought_files(files)
+    for line in lines(found):
+        typer.echo(line)
+    usable = [one for one in found if isinstance(one, Brought)]
+    if out is not None:
+        settings = [one.settings for one in usable if one.settings is not None]
+        if len(settings) != 1:
+            raise ConfigError("--out: for one calibration, whose settings are written")
+        write_atomic(out, (json.dumps(settings[0], indent=1) + "\n").encode())
+    if not usable:
+        raise typer.Exit(1)
+
+
 @config_app.command("show")
 def show_config(
     config: ConfigFile = None,

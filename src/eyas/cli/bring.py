@@ -1,0 +1,282 @@
+"""`eyas bring`: what files of others are, what is left out of them, and what makes them usable."""
+
+import json
+import shlex
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from eyas.engine.core.errors import DataFileError, EyasError
+
+_MOST = 200  # Files of a folder that are looked at
+
+
+class Brought(NamedTuple):
+    """What a file is."""
+
+    path: Path
+    what: str
+    notes: tuple[str, ...] = ()  # What is left out or assumed
+    commands: tuple[str, ...] = ()  # What uses it
+    settings: dict[str, Any] | None = None  # What `--out` writes
+
+
+class Refused(NamedTuple):
+    """Why a file cannot be used."""
+
+    path: Path
+    why: str
+
+
+Finding = Brought | Refused
+
+
+def bring(paths: list[Path]) -> list[Finding]:
+    """Return what files and folders are; of a folder that is nothing itself, what is in it."""
+    found: list[Finding] = []
+    for path in paths:
+        if not path.exists():
+            found.append(Refused(path, f"{path}: cannot read: no such file"))
+        elif path.is_dir():
+            found += _of_folder(path)
+        else:
+            found.append(_of_file(path))
+    return [*found, *_rides(found)]
+
+
+def lines(findings: list[Finding]) -> Iterator[str]:
+    """Yield findings as they are printed."""
+    for one in findings:
+        if isinstance(one, Refused):
+            yield f"not usable: {one.why}"
+            continue
+        yield f"{one.path}: {one.what}"
+        yield from (f"  note: {note}" for note in one.notes)
+        yield from (f"  {command}" for command in one.commands)
+
+
+def _of_folder(folder: Path) -> list[Finding]:
+    from eyas.datasets.tracking.sequences import sequences_in
+
+    quoted = _quoted(folder)
+    if any((folder / name).is_file() for name in ("config.json", "dataset.json")):
+        what = "a recording of Eyas" if (folder / "config.json").is_file() else "a data set of Eyas"
+        uses = (f"eyas track {quoted} --tracker csrt", f"eyas export {quoted} --format coco")
+        return [Brought(folder, what, (), uses)]
+    try:
+        clips = sequences_in(folder)
+    except EyasError:
+        clips = []
+    if clips:
+        frames, known = sum(map(len, clips)), sum(int(clip.visible.sum()) for clip in clips)
+        what = f"{_many(len(clips), 'sequence')} of a tracking benchmark, {frames:,} pictures"
+        notes = () if known >= frames else (f"{frames - known:,} pictures without a box",)
+        return [Brought(folder, what, notes, (f"eyas track {quoted} --tracker csrt",))]
+    inside = sorted(path for path in folder.iterdir() if path.is_file())
+    read = [path for path in inside if path.name.lower().endswith(_ENDINGS)]
+    found: list[Finding] = [_of_file(path) for path in read[:_MOST]]
+    if len(read) > _MOST:
+        found.append(Refused(folder, f"{folder}: {len(read) - _MOST} more files are left out"))
+    if len(read) < len(inside) or not inside:
+        others = _many(len(inside) - len(read), "file")
+        found.append(Refused(folder, f"{folder}: {others} of no kind that is read"))
+    return found
+
+
+def _of_file(path: Path) -> Finding:
+    name = path.name.lower()
+    for endings, look in _KINDS:
+        if name.endswith(endings):
+            try:
+                return look(path)
+            except EyasError as error:
+                return Refused(path, str(error))
+    return Refused(path, f"{path}: of no kind that is read: {', '.join(sorted(_ENDINGS))}")
+
+
+def _map(path: Path) -> Brought:
+    from eyas.maps.osm.reader import read_osm
+
+    data = read_osm(path)
+    places = np.array(list(data.places.values()))
+    (west, south), (east, north) = places.min(axis=0), places.max(axis=0)
+    streets = sum("highway" in way.tags for way in data.ways.values())
+    houses = sum("building" in way.tags for way in data.ways.values())
+    what = (
+        f"a place of OpenStreetMap, {_many(streets, 'street')}, {_many(houses, 'building')}, "
+        f"about latitude {0.5 * (south + north):.4f}, longitude {0.5 * (west + east):.4f}"
+    )
+    if not streets:
+        raise DataFileError(f"{path}: has no streets (a map of Lanelet2 is not read)")
+    command = f"eyas maps import {_quoted(path)}"
+    return Brought(path, what, (), (command, f"eyas video --map {_map_name(path)}"))
+
+
+def _map_name(path: Path) -> str:
+    return path.name.partition(".osm")[0].partition(".pbf")[0]
+
+
+def _net(path: Path) -> Brought:
+    return Brought(path, "a road network of SUMO", (), (f"eyas maps import {_quoted(path)}",))
+
+
+def _track(path: Path) -> Brought:
+    from eyas.engine.custom.tracks import tracks_in
+
+    tracks = tracks_in(path)
+    points = sum(len(track.place) for track in tracks)
+    first = tracks[0]
+    notes = []
+    if first.time is None:
+        notes.append("without times: it goes at custom.speed")
+        long = ""
+    else:
+        long = f", {float(first.time[-1] - first.time[0]):.0f} s"
+    where = "in metres, as they are"
+    at = ""
+    if first.on_earth:
+        east, north = (float(each) for each in first.place[:, :2].mean(axis=0))
+        where = f"about latitude {north:.4f}, longitude {east:.4f}"
+        notes.append("its map must lie there; elsewhere custom.at puts the first point")
+        at = ', "at": [0, 0, 0]'
+        if not np.isnan(first.place[:, 2]).all():
+            notes.append("altitudes are left out: a target stays on the ground")
+    what = f"{_many(len(tracks), 'track')}, {_many(points, 'point')}{long}, {where}"
+    custom = f'{{"trajectory": {json.dumps(str(path))}{at}, "body": "passenger"}}'
+    uses = (
+        f"eyas video --set custom={shlex.quote(custom)} --set same_target=true",
+        f"eyas video --set video.flight={_quoted(path)} --set video.channels=1"
+        + (" --set video.flight_at=[0,0,0]" if at else ""),
+    )
+    return Brought(path, what, tuple(notes), uses)
+
+
+def _shape(path: Path) -> Brought:
+    from eyas.cli.targets.check import check
+    from eyas.engine.custom.config import CustomConfig
+
+    told, usable = check(str(path), CustomConfig(path="-"), "citystreet")
+    if not usable:
+        raise DataFileError(told[0].partition(": ")[2])
+    notes = tuple(line.partition(": ")[2] for line in told if line.startswith("note"))
+    custom = f'{{"mesh": {json.dumps(str(path))}, "behaviour": "wander"}}'
+    uses = (f"eyas video --set custom={shlex.quote(custom)}", f"eyas targets show {_quoted(path)}")
+    return Brought(path, "a shape for a target", notes, uses)
+
+
+def _network(path: Path) -> Brought:
+    from eyas.benchmark.policies.onnx import load_onnx
+
+    policy = load_onnx(path, {}, sampled=False)
+    what = "a detector, which flies as a box tracker" if "box" in policy.told else "a policy"
+    notes = (assumed,) if (assumed := getattr(policy, "assumed", "")) else ()
+    uses = [f"eyas evaluate --policy {_quoted(path)}"]
+    if "detector" in what:
+        uses.append(f"eyas track FOLDER --tracker {_quoted(path)}")
+    if notes:
+        uses.append(f"eyas policies adapt {_quoted(path)} --out ADAPTED.onnx --scale imagenet")
+    return Brought(path, what, notes, tuple(uses))
+
+
+def _pickle(path: Path) -> Brought:
+    note = "it may hold code, which flying it runs: only from somebody whom you trust"
+    command = f"eyas evaluate --policy {_quoted(path)}"
+    return Brought(path, "a policy of stable-baselines3 or PyTorch", (note,), (command,))
+
+
+def _film(path: Path) -> Brought:
+    from eyas.datasets.tracking.sequences import sequences_in
+
+    (clip,) = sequences_in(path, box=(0.0, 0.0, 1.0, 1.0))
+    width, height = clip.size
+    rate = f", {clip.fps:g} a second" if clip.fps else ""
+    what = f"a film of {len(clip)} pictures, {width} x {height}{rate}"
+    command = f"eyas track {_quoted(path)} --tracker csrt --box LEFT,TOP,WIDTH,HEIGHT"
+    return Brought(path, what, (), (command,))
+
+
+def _camera(path: Path) -> Brought:
+    from eyas.engine.camera.calibration import read_calibration
+    from eyas.engine.camera.config import CameraConfig
+    from eyas.engine.core.config import validated
+
+    camera, notes = read_calibration(path)
+    validated(CameraConfig, camera, f"{path}")
+    model = camera["lens"].get("model", "pinhole")
+    what = f"a calibrated camera, {camera['width']} x {camera['height']}, lens {model}"
+    said = shlex.quote("camera.lens=" + json.dumps(camera["lens"]))
+    sides = " ".join(f"--set camera.{key}={camera[key]}" for key in list(camera)[:3])
+    return Brought(
+        path, what, tuple(notes), (f"eyas video {sides} --set {said}",), {"camera": camera}
+    )
+
+
+def _json(path: Path) -> Brought:
+    from eyas.engine.core.decoding import read_json
+    from eyas.engine.settings.file import load_settings
+
+    try:
+        whole = read_json(path, 64 << 20)
+    except DataFileError:
+        whole = {}  # the original's files may have comments
+    if isinstance(whole, dict) and whole.get("type") in ("FeatureCollection", "Feature"):
+        return _track(path)
+    if isinstance(whole, dict) and {"roads", "layers"} & whole.keys():
+        command = f"eyas video --map {_quoted(path)}"
+        return Brought(path, "a plan of a map", (), (f"eyas maps check {_quoted(path)}", command))
+    settings = load_settings(path, (), trust=True)
+    notes = (f"map {settings.world.map}, weather {settings.world.weather}, "
+             f"target {settings.target}",)  # fmt: skip
+    return Brought(path, "settings", notes, (f"eyas video --config {_quoted(path)}",))
+
+
+def _rides(findings: list[Finding]) -> Iterator[Brought]:
+    """Yield the ride of each track that comes with the map of its place."""
+    maps = [one for one in findings if isinstance(one, Brought) and "OpenStreetMap" in one.what]
+    for place in maps:
+        for one in findings:
+            if isinstance(one, Brought) and "its map must lie there" in " ".join(one.notes):
+                custom = f'{{"trajectory": {json.dumps(str(one.path))}, "body": "passenger"}}'
+                name = _map_name(place.path)
+                yield Brought(
+                    one.path,
+                    f"a ride on {place.path.name}",
+                    (),
+                    (
+                        f"eyas maps import {_quoted(place.path)}",
+                        f"eyas video --map {name} --set custom={shlex.quote(custom)} "
+                        "--set same_target=true --set video.channels=1",
+                    ),
+                )
+
+
+def _quoted(path: Path) -> str:
+    return shlex.quote(str(path))
+
+
+def _many(count: int, noun: str) -> str:
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+
+
+def _kinds() -> tuple[tuple[tuple[str, ...], Callable[[Path], Brought]], ...]:
+    from eyas.datasets.tracking.sequences import FILMS
+    from eyas.engine.custom.config import ENDINGS
+    from eyas.engine.custom.tracks import endings
+
+    return (
+        ((".osm", ".osm.gz", ".osm.bz2", ".osm.pbf", ".pbf"), _map),
+        ((".net.xml", ".net.xml.gz", ".sumocfg"), _net),
+        (tuple(FILMS), _film),
+        ((".onnx",), _network),
+        ((".zip", ".pt", ".pth", ".pt2"), _pickle),
+        (tuple(ENDINGS), _shape),
+        (endings(), _track),
+        ((".yaml", ".yml", ".xml"), _camera),
+        ((".json",), _json),
+    )
+
+
+_KINDS = _kinds()
+_ENDINGS = tuple(dict.fromkeys(ending for endings, _ in _KINDS for ending in endings))

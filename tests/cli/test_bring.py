@@ -1,0 +1,82 @@
+"""`eyas bring`: what files of others are, and the commands that use them."""
+
+import json
+
+import pytest
+
+from eyas.cli.bring import Brought, Refused, bring
+
+OSM = """<osm version="0.6"><node id="1" lat="51.4993" lon="-0.1314"/>
+<node id="2" lat="51.4993" lon="-0.1285"/>
+<way id="9"><nd ref="1"/><nd ref="2"/><tag k="highway" v="residential"/></way></osm>"""
+GPX = """<gpx><trk><trkseg>
+<trkpt lat="51.4993" lon="-0.1312"><ele>9</ele><time>2026-05-01T10:00:00Z</time></trkpt>
+<trkpt lat="51.4993" lon="-0.1290"><ele>9</ele><time>2026-05-01T10:00:20Z</time></trkpt>
+</trkseg></trk></gpx>"""
+CAMERA = """image_width: 640
+image_height: 480
+distortion_model: plumb_bob
+camera_matrix:
+  data: [500.0, 0.0, 319.5, 0.0, 500.0, 239.5, 0.0, 0.0, 1.0]
+distortion_coefficients:
+  data: [-0.2, 0.05, 0.0, 0.0, 0.0]
+"""
+
+
+def written(folder, name, content):
+    path = folder / name
+    path.write_text(content)
+    return path
+
+
+def test_a_place_and_a_track_are_a_ride(tmp_path):
+    written(tmp_path, "place.osm", OSM)
+    written(tmp_path, "ride.gpx", GPX)
+    written(tmp_path, "notes.md", "mine")
+    place, track, other, ride = bring([tmp_path])
+    assert "1 street, 0 buildings" in place.what
+    assert "1 track, 2 points, 20 s, about latitude 51.4993" in track.what
+    assert isinstance(other, Refused)
+    assert ride.what == "a ride on place.osm"
+    assert ride.commands[1].startswith("eyas video --map place --set custom=")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "what", "command"),
+    [
+        ("a.csv", "t,x,y\n0,0,0\n5,5,0\n", "1 track, 2 points, 5 s, in metres", "eyas video"),
+        ("a.proto", "PROTO A [] { Shape { geometry Box { size 1 1 1 } } }", "a shape", "custom"),
+        ("a.yaml", CAMERA, "a calibrated camera, 640 x 480, lens brown", "camera.field_of_view"),
+        ("a.json", '{"world": {"map": "village"}}', "settings", "--config"),
+        ("a.zip", "PK", "a policy of stable-baselines3", "eyas evaluate"),
+    ],
+)
+def test_each_kind_has_its_command(tmp_path, name, content, what, command):
+    (found,) = bring([written(tmp_path, name, content)])
+    assert isinstance(found, Brought), found
+    assert found.what.startswith(what)
+    assert command in " ".join(found.commands)
+
+
+def test_what_cannot_be_used_says_why_and_the_exit_code_is_1(tmp_path, eyas_command):
+    bad = [
+        written(tmp_path, "a.gpx", "<gpx/>"),
+        written(tmp_path, "a.docx", "?"),
+        tmp_path / "gone.osm",
+    ]
+    done = eyas_command("bring", *map(str, bad))
+    assert done.returncode == 1
+    lines = done.stdout.splitlines()
+    assert [line.startswith("not usable: ") for line in lines] == [True] * 3
+    assert "has no track" in lines[0]
+    assert "of no kind that is read: .avi, " in lines[1]
+    assert "no such file" in lines[2]
+
+
+def test_a_calibration_becomes_settings(tmp_path, eyas_command):
+    out = tmp_path / "camera.json"
+    file = str(written(tmp_path, "a.yaml", CAMERA))
+    assert eyas_command("bring", file, "--out", str(out)).returncode == 0
+    camera = json.loads(out.read_text())["camera"]
+    assert camera["lens"]["k1"] == -0.2
+    assert eyas_command("config", "show", "--config", str(out)).returncode == 0
