@@ -19,6 +19,7 @@ from eyas.engine.render.jobs import Size, new_task, set_views
 from eyas.engine.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
 from eyas.engine.render.kernels.draw import draw_views
 from eyas.engine.render.kernels.light.casters import influence
+from eyas.engine.render.kernels.tent import filter_pixels
 from eyas.engine.render.kernels.visibility.clusters import CLUSTER
 from eyas.engine.render.kernels.visibility.fill import SPAN_ROWS
 from eyas.engine.render.kernels.visibility.items import ITEM_COLUMNS
@@ -102,6 +103,8 @@ class CpuRenderer:
             output = output._replace(rgb=NO_OUTPUT.rgb)
         if any(len(array) for array in output):
             self._draw(views, movers, output, picture, GRIDS[1], until)
+        if picture.rgb is not None and until == DrawStage.SHADING and views.filters(samples):
+            filter_pixels(picture.rgb)
 
     def _draw(
         self,

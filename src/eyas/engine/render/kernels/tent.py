@@ -1,0 +1,212 @@
+"""The tent filter of a picture's pixels: a quarter of each comes from either side, along rows and
+along columns, as a lens and a sensor spread the light of a point over more than one pixel.
+
+A sample in the middle of each pixel says all or nothing of what is thinner than a pixel, so it
+comes and goes from picture to picture. The filter is the last that belongs to the light: it follows
+what is in the air (halos, plumes, rain), since all that passes the lens, and precedes what is done
+to pixels (noise, coding, overlays). Bytes are filtered, not light, which keeps highlights small and
+costs a hundredth of a picture.
+
+Sums are whole numbers, so bands and processors change no byte. Each 32 bits hold two bytes, the
+even or the odd ones of four, with room for their sums.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.engine.render.kernels.scalars import i8, u4
+from eyas.lanes import PackedBundle, kernel, parallel, thread_count
+from eyas.lanes.vector import WIDTH, load, load_words, store, store_words
+
+PIXELS_PER_THREAD = 100_000
+"""Pixels below which another thread takes longer to wake than to help."""
+
+WEIGHTS = np.outer((1, 2, 1), (1, 2, 1)).astype(np.float32) / np.float32(16.0)
+"""The filter, for light."""
+
+ROUNDING, SHIFT = 8, 4  # Half of the 16 parts of which a byte is made, and their number in bits
+
+_SIZES = 4  # Sizes of pictures for which memory is kept
+
+_BYTES = 4 * WIDTH  # Bytes in lanes
+
+_HALVES = u4(0x00FF00FF)  # The even bytes of four
+
+_ROUNDINGS = u4(ROUNDING * 0x00010001)
+
+
+class _Pixels(NamedTuple):
+    """What is filtered."""
+
+    rgb: NDArray[np.uint8]  # Shape (P, H, W, 3)
+
+
+class _Work(NamedTuple):
+    """How the work is shared, and its memory."""
+
+    band: NDArray[np.int64]  # Picture, first row, last row + 1 of each band, shape (J, 3)
+    edge: NDArray[np.uint8]
+    """The rows above and below each band, before either is written; none counts at the border of a
+    picture, whose own row stands for it, shape (J, 2, W, 3)."""
+    line: NDArray[np.uint8]
+    """Two rows of each worker by turns, with a pixel more at either end, shape (K, 2, bytes)."""
+    total: NDArray[np.uint32]
+    """Sums along three rows by turns, of even and of odd bytes, shape (K, 3, 2, words)."""
+
+
+_kept: dict[tuple[int, ...], PackedBundle[_Work]] = {}
+
+
+def filter_pixels(rgb: NDArray[np.uint8], threads: int | None = None) -> None:
+    """Filter pictures, shape (P, H, W, 3), in place."""
+    pictures, height, width = rgb.shape[:3]
+    workers = min(threads or thread_count(), 1 + pictures * height * width // PIXELS_PER_THREAD)
+    key = pictures, height, width, workers
+    # Taken away while it is in use, so that another thread gets another one.
+    held = _kept.pop(key, None) or PackedBundle(_work_of(*key))
+    band, edge = held.bundle.band, held.bundle.edge
+    if len(band) > pictures:
+        beside = np.clip(band[:, 1:] + [-1, 0], 0, height - 1)
+        edge[:] = rgb[band[:, :1], beside]
+    _filter(workers, PackedBundle(_Pixels(rgb)), held)
+    if len(_kept) >= _SIZES:
+        _kept.clear()
+    _kept[key] = held
+
+
+def _work_of(pictures: int, height: int, width: int, workers: int) -> _Work:
+    """Return bands of so many pictures, and memory for them."""
+    bands = min(-(-workers // max(pictures, 1)), height)
+    edges = np.arange(bands + 1) * height // bands
+    band = np.empty((pictures, bands, 3), np.int64)
+    band[:, :, 0] = np.arange(pictures)[:, None]
+    band[:, :, 1], band[:, :, 2] = edges[:-1], edges[1:]
+    words = -(-3 * width // _BYTES) * WIDTH
+    return _Work(
+        band.reshape(-1, 3),
+        np.empty((pictures * bands, 2, width, 3), np.uint8),
+        np.empty((workers, 2, 4 * words + _BYTES), np.uint8),
+        np.empty((workers, 3, 2, words), np.uint32),
+    )
+
+
+@parallel
+def _filter(worker: int, workers: int, pixels: _Pixels, work: _Work) -> None:
+    """Filter the bands whose turn is this worker's."""
+    for index in range(worker, work.band.shape[0], workers):
+        picture, first, last = work.band[index]
+        _filter_band(
+            pixels.rgb[picture],
+            work.edge[index],
+            work.line[worker],
+            work.total[worker],
+            first,
+            last,
+        )
+
+
+@kernel
+def _filter_band(
+    pixels: NDArray[np.uint8],  # Of a picture, shape (H, W, 3)
+    edge: NDArray[np.uint8],  # See `_Work`
+    line: NDArray[np.uint8],
+    total: NDArray[np.uint32],
+    first: int,
+    last: int,
+) -> None:
+    """Filter rows from the first on, up to the last, excluded.
+
+    A row is copied one turn before it is added up, since what has just been stored is not yet in
+    the cache, from which the bytes beside each are loaded.
+    """
+    if first > 0:
+        _copy_row(edge, 0, line[0])
+    else:
+        _copy_row(pixels, 0, line[0])
+    _copy_row(pixels, first, line[1])
+    _add_across(line[0], total[0])
+    for row in range(first, last + 1):
+        now = row - first
+        if row + 1 == last < len(pixels):
+            _copy_row(edge, 1, line[now & 1])
+        elif row < last:
+            _copy_row(pixels, min(row + 1, last - 1), line[now & 1])
+        _add_across(line[now + 1 & 1], total[(now + 1) % 3])
+        if now > 0:
+            _write_row(pixels, row - 1, total[(now - 1) % 3], total[now % 3], total[(now + 1) % 3])
+
+
+@kernel
+def _copy_row(pixels: NDArray[np.uint8], row: int, line: NDArray[np.uint8]) -> None:
+    """Copy a row, and its ends once more."""
+    count = 3 * pixels.shape[1]
+    begin, last = row * count, count - _BYTES
+    for at in range(0, count - _BYTES + 1, _BYTES):
+        store_words(line, 3 + at, load_words(pixels, begin + at))
+    if last >= 0:
+        store_words(line, 3 + last, load_words(pixels, begin + last))
+    else:
+        for at in range(count):
+            line[3 + at] = pixels[row, at // 3, at % 3]
+    for k in range(3):
+        line[k] = line[3 + k]
+        line[3 + count + k] = line[count + k]
+
+
+@kernel
+def _add_across(line: NDArray[np.uint8], total: NDArray[np.uint32]) -> None:
+    """Add the bytes of a row to those of the pixels beside them."""
+    words = total.shape[1]
+    for word in range(0, words, WIDTH):
+        at = 4 * word
+        left, own, right = load_words(line, at), load_words(line, at + 3), load_words(line, at + 6)
+        even = (left & _HALVES) + (right & _HALVES) + ((own & _HALVES) << u4(1))
+        left, own, right = left >> u4(8), own >> u4(8), right >> u4(8)
+        odd = (left & _HALVES) + (right & _HALVES) + ((own & _HALVES) << u4(1))
+        store(total, word, even)
+        store(total, words + word, odd)
+
+
+@kernel
+def _write_row(
+    pixels: NDArray[np.uint8],  # Of which a row is written
+    row: int,
+    above: NDArray[np.uint32],  # Sums of the row above, of the row, and of that below
+    middle: NDArray[np.uint32],
+    below: NDArray[np.uint32],
+) -> None:
+    """Write a row, and no byte beside it: others may be writing those."""
+    count = 3 * pixels.shape[1]
+    whole = count // _BYTES * WIDTH
+    for word in range(0, whole, WIDTH):
+        store_words(pixels, row * count + 4 * word, _mean_down(above, middle, below, word))
+    if count >= _BYTES and count % 4 == 0:
+        word = count // 4 - WIDTH
+        store_words(pixels, row * count + 4 * word, _mean_down(above, middle, below, word))
+        return
+    if count > 4 * whole:
+        # Their sums are not needed any more, and have room for the bytes of all lanes.
+        rest = _mean_down(above, middle, below, whole)
+        store(above, whole, rest)
+        for at in range(4 * whole, count):
+            word = i8(above[0, at // 4])
+            pixels[row, at // 3, at % 3] = (word >> 8 * (at & 3)) & 255
+
+
+@kernel(inline=True)
+def _mean_down(
+    above: NDArray[np.uint32], middle: NDArray[np.uint32], below: NDArray[np.uint32], word: int
+) -> int:
+    """Return 32 bytes of a row, of their sums in three."""
+    odd = word + above.shape[1]
+    return _mean(load(above, word), load(middle, word), load(below, word)) | (
+        _mean(load(above, odd), load(middle, odd), load(below, odd)) << u4(8)
+    )
+
+
+@kernel(inline=True)
+def _mean(above: int, middle: int, below: int) -> int:
+    """Return two bytes in each lane."""
+    return ((above + below + (middle << u4(1)) + _ROUNDINGS) >> u4(SHIFT)) & _HALVES
