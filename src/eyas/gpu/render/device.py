@@ -165,6 +165,8 @@ class DeviceRenderer:
             record_shown=device.empty((views, records, 2), np.int64),
             unit=device.empty((views, UNITS_PER_ROW * plane[1]), np.int32),
             recorded=device.zeros((views, 1), np.int64),
+            line=device.empty((0, 0, 0), np.uint8),
+            total=device.empty((0, 0, 0, 0), np.uint32),
             bent_tile=device.empty((0, 0, 4), np.int32),
         )
 

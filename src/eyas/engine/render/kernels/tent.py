@@ -83,13 +83,15 @@ def _work_of(pictures: int, height: int, width: int, workers: int) -> _Work:
     band = np.empty((pictures, bands, 3), np.int64)
     band[:, :, 0] = np.arange(pictures)[:, None]
     band[:, :, 1], band[:, :, 2] = edges[:-1], edges[1:]
+    edge = np.empty((pictures * bands, 2, width, 3), np.uint8)
+    return _Work(band.reshape(-1, 3), edge, *memory(workers, width))
+
+
+def memory(workers: int, width: int) -> tuple[NDArray[np.uint8], NDArray[np.uint32]]:
+    """Return `line` and `total` of so many workers."""
     words = -(-3 * width // _BYTES) * WIDTH
-    return _Work(
-        band.reshape(-1, 3),
-        np.empty((pictures * bands, 2, width, 3), np.uint8),
-        np.empty((workers, 2, 4 * words + _BYTES), np.uint8),
-        np.empty((workers, 3, 2, words), np.uint32),
-    )
+    line = np.empty((workers, 2, 4 * words + _BYTES), np.uint8)
+    return line, np.empty((workers, 3, 2, words), np.uint32)
 
 
 @parallel
@@ -97,7 +99,7 @@ def _filter(worker: int, workers: int, pixels: _Pixels, work: _Work) -> None:
     """Filter the bands whose turn is this worker's."""
     for index in range(worker, work.band.shape[0], workers):
         picture, first, last = work.band[index]
-        _filter_band(
+        filter_rows(
             pixels.rgb[picture],
             work.edge[index],
             work.line[worker],
@@ -108,7 +110,7 @@ def _filter(worker: int, workers: int, pixels: _Pixels, work: _Work) -> None:
 
 
 @kernel
-def _filter_band(
+def filter_rows(
     pixels: NDArray[np.uint8],  # Of a picture, shape (H, W, 3)
     edge: NDArray[np.uint8],  # See `_Work`
     line: NDArray[np.uint8],
