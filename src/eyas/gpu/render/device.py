@@ -12,9 +12,12 @@ from eyas.engine.render.kernels.visibility.key import MOST_INSTANCES
 from eyas.engine.render.kernels.visibility.triangles import TRIANGLE_ROWS
 from eyas.engine.state.draw import DrawStage
 from eyas.gpu.render.stages import (
+    ROWS,
     Shares,
     cast_lights,
+    copy_filtered,
     fill_triangles,
+    filter_columns,
     find_triangles,
     list_views,
     look_for_clusters,
@@ -91,6 +94,7 @@ class DeviceRenderer:
         *,
         falls: int = 0,  # See `Task`
         until: DrawStage = DrawStage.SHADING,  # Last stage to run, to measure the cost of each
+        tent: bool,  # See `Views`
     ) -> None:
         """Draw views into the arrays of `output` that are not empty, all on the device."""
         device, slots = self._device, movers.part.shape[1]
@@ -122,6 +126,10 @@ class DeviceRenderer:
         if coloured and until > DrawStage.RASTERISING:
             launch(cast_lights, many)
             launch(shade, many)
+        if tent and len(output.rgb) > 0 and until == DrawStage.SHADING:
+            columns = size.views * -(-size.height // ROWS) * 3 * size.width
+            for stage in (filter_columns, copy_filtered):
+                device.launch(stage, columns, held, bundles[4])
         measured = len(output.subject) + len(output.actor) > 0
         if measured:
             device.clear(scratch.alone)

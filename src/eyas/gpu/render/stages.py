@@ -15,6 +15,7 @@ from eyas.engine.render.kernels.bundles import Band, Geometry, Light, Movers, Ou
 from eyas.engine.render.kernels.draw import band_of, light_at, no_glass, write_colours, write_facts
 from eyas.engine.render.kernels.light.casters import cast_light
 from eyas.engine.render.kernels.scalars import i8
+from eyas.engine.render.kernels.tent import ROUNDING, SHIFT
 from eyas.engine.render.kernels.visibility.items import draw_clusters, find_clusters, list_items
 from eyas.engine.render.kernels.visibility.records import fill_recorded
 from eyas.engine.render.kernels.visibility.transform import view_of
@@ -23,7 +24,9 @@ from eyas.lanes import ParallelCall, address_of, kernel, parallel, specialised
 __all__ = [
     "Shares",
     "cast_lights",
+    "copy_filtered",
     "fill_triangles",
+    "filter_columns",
     "find_triangles",
     "list_views",
     "look_for_clusters",
@@ -131,3 +134,63 @@ fill_triangles = _over_views(_fill)
 cast_lights = _over_views(_cast)
 shade = _over_views(_shade)
 tell_facts = _over_views(_tell)
+
+
+# The tent filter, see `eyas.engine.render.kernels.tent`: a worker is one thread, and does a column
+# of bytes. It writes into `Scratch.shade`, which shading has read, as others need what it replaces.
+
+ROWS = 16  # Rows of a picture that a worker does
+
+
+@kernel(inline=True)
+def _piece(item: int, output: Output) -> tuple[int, int, int, int]:
+    """Return the view of an item, its column of bytes, its first row, and the row after the last."""
+    height, count = output.rgb.shape[1], 3 * output.rgb.shape[2]
+    number, column = item // count, item % count
+    pieces = (height + ROWS - 1) // ROWS
+    first = number % pieces * ROWS
+    return number // pieces, column, first, min(first + ROWS, height)
+
+
+@kernel(inline=True)
+def _pieces(output: Output) -> int:
+    """Return how many columns of so many rows there are in all views."""
+    views, height, width, channels = output.rgb.shape
+    return int(views * ((height + ROWS - 1) // ROWS) * width * channels)
+
+
+@kernel(inline=True)
+def _across(pixels: NDArray[np.uint8], row: int, column: int) -> int:
+    """Return the sum of four times a byte of a row, and of the pixels beside it."""
+    last = 3 * pixels.shape[1] - 3
+    left = column - 3 if column >= 3 else column
+    right = column + 3 if column < last else column
+    own = i8(pixels[row, column // 3, column % 3])
+    beside = i8(pixels[row, left // 3, left % 3]) + i8(pixels[row, right // 3, right % 3])
+    return beside + 2 * own
+
+
+@parallel
+def filter_columns(worker: int, workers: int, scratch: Scratch, output: Output) -> None:
+    """Filter the bytes of all views, into `Scratch.shade`."""
+    height = output.rgb.shape[1]
+    for item in range(worker, _pieces(output), workers):
+        view, column, first, last = _piece(item, output)
+        pixels, filtered = output.rgb[view], scratch.shade[view]
+        above = _across(pixels, max(first - 1, 0), column)
+        own = _across(pixels, first, column)
+        for row in range(first, last):
+            below = _across(pixels, min(row + 1, height - 1), column)
+            mean = (above + 2 * own + below + ROUNDING) >> SHIFT
+            filtered[row, column // 4, column % 4] = mean
+            above, own = own, below
+
+
+@parallel
+def copy_filtered(worker: int, workers: int, scratch: Scratch, output: Output) -> None:
+    """Copy what `filter_columns` has written to where it belongs."""
+    for item in range(worker, _pieces(output), workers):
+        view, column, first, last = _piece(item, output)
+        pixels, filtered = output.rgb[view], scratch.shade[view]
+        for row in range(first, last):
+            pixels[row, column // 3, column % 3] = filtered[row, column // 4, column % 4]

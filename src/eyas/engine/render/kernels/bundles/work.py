@@ -126,4 +126,4 @@ class Task(NamedTuple):
     falls: int  # 1: flakes, drops and leaves are drawn at the views' instants
     until: int  # The last `eyas.engine.state.draw.DrawStage`.
     job: Job
-    tent: int = 0  # 1: each job draws a whole picture, and filters its bytes, see `tent.filter_rows`
+    tent: int = 0  # 1: jobs draw whole pictures, and filter their bytes, see `tent.filter_rows`
