@@ -15,7 +15,7 @@ from eyas.engine.render.kernels.bundles import Band, Geometry, Light, Movers, Ou
 from eyas.engine.render.kernels.draw import band_of, light_at, no_glass, write_colours, write_facts
 from eyas.engine.render.kernels.light.casters import cast_light
 from eyas.engine.render.kernels.scalars import i8
-from eyas.engine.render.kernels.tent import ROUNDING, SHIFT
+from eyas.engine.render.kernels.tent import MIDDLE, ROUNDING, SHIFT, SIDE
 from eyas.engine.render.kernels.visibility.items import draw_clusters, find_clusters, list_items
 from eyas.engine.render.kernels.visibility.records import fill_recorded
 from eyas.engine.render.kernels.visibility.transform import view_of
@@ -144,7 +144,7 @@ ROWS = 16  # Rows of a picture that a worker does
 
 @kernel(inline=True)
 def _piece(item: int, output: Output) -> tuple[int, int, int, int]:
-    """Return the view of an item, its column of bytes, its first row, and the row after the last."""
+    """Return the view of an item, its column of bytes, its first row, and the row after these."""
     height, count = output.rgb.shape[1], 3 * output.rgb.shape[2]
     number, column = item // count, item % count
     pieces = (height + ROWS - 1) // ROWS
@@ -161,13 +161,13 @@ def _pieces(output: Output) -> int:
 
 @kernel(inline=True)
 def _across(pixels: NDArray[np.uint8], row: int, column: int) -> int:
-    """Return the sum of four times a byte of a row, and of the pixels beside it."""
+    """Return the weighted sum of a byte of a row and of those of the pixels beside it."""
     last = 3 * pixels.shape[1] - 3
     left = column - 3 if column >= 3 else column
     right = column + 3 if column < last else column
     own = i8(pixels[row, column // 3, column % 3])
     beside = i8(pixels[row, left // 3, left % 3]) + i8(pixels[row, right // 3, right % 3])
-    return beside + 2 * own
+    return SIDE * beside + MIDDLE * own
 
 
 @parallel
@@ -181,7 +181,7 @@ def filter_columns(worker: int, workers: int, scratch: Scratch, output: Output) 
         own = _across(pixels, first, column)
         for row in range(first, last):
             below = _across(pixels, min(row + 1, height - 1), column)
-            mean = (above + 2 * own + below + ROUNDING) >> SHIFT
+            mean = (SIDE * (above + below) + MIDDLE * own + ROUNDING) >> SHIFT
             filtered[row, column // 4, column % 4] = mean
             above, own = own, below
 

@@ -23,10 +23,12 @@ from eyas.lanes.vector import WIDTH, load, load_words, store, store_words
 PIXELS_PER_THREAD = 100_000
 """Pixels below which another thread takes longer to wake than to help."""
 
-WEIGHTS = np.outer((1, 2, 1), (1, 2, 1)).astype(np.float32) / np.float32(16.0)
+SIDE, MIDDLE, PARTS = 1, 2, 2  # Weights along a row, or a column; their sum as a power of two
+
+WEIGHTS = np.outer((SIDE, MIDDLE, SIDE), (SIDE, MIDDLE, SIDE)).astype(np.float32) / 4.0**PARTS
 """The filter, for light."""
 
-ROUNDING, SHIFT = 8, 4  # Half of the 16 parts of which a byte is made, and their number in bits
+SHIFT, ROUNDING = 2 * PARTS, 1 << 2 * PARTS - 1  # Bits of a sum's fraction, and a half
 
 _SIZES = 4  # Sizes of pictures for which memory is kept
 
@@ -164,11 +166,9 @@ def _add_across(line: NDArray[np.uint8], total: NDArray[np.uint32]) -> None:
     for word in range(0, words, WIDTH):
         at = 4 * word
         left, own, right = load_words(line, at), load_words(line, at + 3), load_words(line, at + 6)
-        even = (left & _HALVES) + (right & _HALVES) + ((own & _HALVES) << u4(1))
+        store(total, word, _weighted(left & _HALVES, own & _HALVES, right & _HALVES))
         left, own, right = left >> u4(8), own >> u4(8), right >> u4(8)
-        odd = (left & _HALVES) + (right & _HALVES) + ((own & _HALVES) << u4(1))
-        store(total, word, even)
-        store(total, words + word, odd)
+        store(total, words + word, _weighted(left & _HALVES, own & _HALVES, right & _HALVES))
 
 
 @kernel
@@ -211,4 +211,10 @@ def _mean_down(
 @kernel(inline=True)
 def _mean(above: int, middle: int, below: int) -> int:
     """Return two bytes in each lane."""
-    return ((above + below + (middle << u4(1)) + _ROUNDINGS) >> u4(SHIFT)) & _HALVES
+    return ((_weighted(above, middle, below) + _ROUNDINGS) >> u4(SHIFT)) & _HALVES
+
+
+@kernel(inline=True)
+def _weighted(before: int, own: int, after: int) -> int:
+    """Return two sums in each lane."""
+    return (before + after) * u4(SIDE) + own * u4(MIDDLE)
