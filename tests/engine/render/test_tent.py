@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.camera.config import CameraConfig
-from eyas.engine.render.kernels.tent import filter_pixels
+from eyas.engine.render.kernels.tent import filter_light, filter_pixels
 from eyas.engine.state.draw import DrawStage, Picture
 
 from ...kit.small_city import looking
@@ -85,3 +85,13 @@ def test_a_setting_leaves_it_out_or_asks_for_it():
     assert not CameraConfig(samples=4).tent
     assert not CameraConfig(pixel_filter="box").tent
     assert CameraConfig(samples=4, pixel_filter="tent").tent
+
+
+@pytest.mark.parametrize("size", [(9, 8), (84, 84), (20, 37)])
+def test_light_is_filtered_by_the_same_weights(size):
+    light = np.random.default_rng(5).random((2, 3, *size), np.float32)
+    wide = np.pad(light, ((0, 0), (0, 0), (1, 1), (1, 1)), "edge")
+    across = wide[..., :-2] * 0.25 + wide[..., 1:-1] * 0.5 + wide[..., 2:] * 0.25
+    soft = across[:, :, :-2] * 0.25 + across[:, :, 1:-1] * 0.5 + across[:, :, 2:] * 0.25
+    filter_light(light)
+    np.testing.assert_allclose(light, soft, rtol=1e-5)

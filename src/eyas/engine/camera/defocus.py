@@ -39,25 +39,18 @@ def defocused(
     blurred = radiance.copy()
     for size in np.unique(diameter[diameter > 1.0]).tolist():
         same = np.flatnonzero(diameter == size)
-        blurred[same] = spread(radiance[same], disc(size))
+        weight = disc(size)
+        reach, height = len(weight) // 2, radiance.shape[2]
+        # As many columns more as a load of eight may reach.
+        sides = ((0, 0), (0, 0), (reach, reach), (reach, reach + WIDTH))
+        padded = np.pad(radiance[same], sides, mode="edge")
+        columns = padded.shape[3]
+        out = np.empty((len(same), 3, height, columns), np.float32)
+        flat = padded.reshape(len(same), 3, -1), out.reshape(len(same), 3, -1)
+        work = _Work(*flat, weight, height, radiance.shape[3], columns)
+        _blur(min(thread_count(), len(same)), work)
+        blurred[same] = out[..., : radiance.shape[3]]
     return blurred
-
-
-def spread(
-    radiance: NDArray[np.float32],  # Shape (V, 3, H, W)
-    weight: NDArray[np.float32],  # Share of a point's light in each pixel around it, see `disc`
-) -> NDArray[np.float32]:
-    """Return pictures whose points are spread; beyond the border lies what is at the border."""
-    (views, _, height, width), reach = radiance.shape, len(weight) // 2
-    # As many columns more as a load of eight may reach.
-    sides = ((0, 0), (0, 0), (reach, reach), (reach, reach + WIDTH))
-    padded = np.pad(radiance, sides, mode="edge")
-    columns = padded.shape[3]
-    out = np.empty((views, 3, height, columns), np.float32)
-    flat = padded.reshape(views, 3, -1), out.reshape(views, 3, -1)
-    work = _Work(*flat, weight, height, width, columns)
-    _blur(min(thread_count(), views), work)
-    return np.ascontiguousarray(out[..., :width])
 
 
 class _Work(NamedTuple):

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.kernels.scalars import i8, u4
+from eyas.engine.render.kernels.scalars import f4, i8, u4
 from eyas.lanes import PackedBundle, kernel, parallel, thread_count
 from eyas.lanes.vector import WIDTH, load, load_words, store, store_words
 
@@ -24,9 +24,6 @@ PIXELS_PER_THREAD = 100_000
 """Pixels below which another thread takes longer to wake than to help."""
 
 SIDE, MIDDLE, PARTS = 1, 2, 2  # Weights along a row, or a column; their sum as a power of two
-
-WEIGHTS = np.outer((SIDE, MIDDLE, SIDE), (SIDE, MIDDLE, SIDE)).astype(np.float32) / 4.0**PARTS
-"""The filter, for light."""
 
 SHIFT, ROUNDING = 2 * PARTS, 1 << 2 * PARTS - 1  # Bits of a sum's fraction, and a half
 
@@ -218,3 +215,49 @@ def _mean(above: int, middle: int, below: int) -> int:
 def _weighted(before: int, own: int, after: int) -> int:
     """Return two sums in each lane."""
     return (before + after) * u4(SIDE) + own * u4(MIDDLE)
+
+
+class _Light(NamedTuple):
+    """Light that is filtered, and memory of each worker as in `_Work`."""
+
+    plane: NDArray[np.float32]  # Shape (planes, H, W)
+    line: NDArray[np.float32]  # Shape (K, at least W + 9)
+    total: NDArray[np.float32]  # Shape (K, 3, at least W + 7)
+
+
+def filter_light(radiance: NDArray[np.float32]) -> None:
+    """Filter the light of pictures at least eight pixels wide, shape (V, 3, H, W), in place."""
+    plane = radiance.reshape(-1, *radiance.shape[2:])
+    workers, room = min(thread_count(), len(plane)), plane.shape[2] + 2 * WIDTH
+    line, total = np.zeros((workers, room), np.float32), np.empty((workers, 3, room), np.float32)
+    _filter_planes(workers, _Light(plane, line, total))
+
+
+@parallel
+def _filter_planes(worker: int, workers: int, light: _Light) -> None:
+    """Filter the planes whose turn is this worker's."""
+    line, total = light.line[worker], light.total[worker]
+    height, width = light.plane.shape[1], light.plane.shape[2]
+    for number in range(worker, light.plane.shape[0], workers):
+        plane = light.plane[number]
+        for row in range(height + 1):
+            if row < height:
+                for first in range(0, width, WIDTH):
+                    at = min(first, width - WIDTH)
+                    store(line, 1 + at, load(plane, row * width + at))
+                line[0], line[1 + width] = line[1], line[width]
+                for at in range(0, width, WIDTH):
+                    across = _spread(load(line, at), load(line, at + 1), load(line, at + 2))
+                    store(total[row % 3], at, across)
+            above, own, below = max(row - 2, 0) % 3, (row - 1) % 3, min(row, height - 1) % 3
+            for first in range(0, width if row > 0 else 0, WIDTH):
+                at = min(first, width - WIDTH)
+                three = load(total[above], at), load(total[own], at), load(total[below], at)
+                store(plane, (row - 1) * width + at, _spread(three[0], three[1], three[2]))
+
+
+@kernel(inline=True)
+def _spread(before: float, own: float, after: float) -> float:
+    """Return the weighted mean of eight numbers and their neighbours'."""
+    whole = f4(1 << PARTS)
+    return (before + after) * (f4(SIDE) / whole) + own * (f4(MIDDLE) / whole)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.camera.config import CameraConfig
-from eyas.engine.camera.defocus import defocused, spread
+from eyas.engine.camera.defocus import defocused
 from eyas.engine.camera.development import Development
 from eyas.engine.camera.dirt import Dirt
 from eyas.engine.camera.glass import change_light
@@ -21,7 +21,7 @@ from eyas.engine.camera.thermal import ThermalConfig, ThermalFrames, ThermalImag
 from eyas.engine.camera.tone import ToneCurve
 from eyas.engine.core.counter_rng import SEEDS
 from eyas.engine.core.variation import sample
-from eyas.engine.render.kernels.tent import WEIGHTS, filter_pixels
+from eyas.engine.render.kernels.tent import filter_light, filter_pixels
 from eyas.engine.render.outputs import picture_size
 from eyas.engine.sim.assets import Assets
 from eyas.engine.state.draw import DrawList, Picture, Views
@@ -178,7 +178,7 @@ class CameraModel:
             assert seen.class_id is not None
             near_infrared(light, seen.class_id)
         if self._tent and self.development is not None:
-            light = spread(light, WEIGHTS)
+            filter_light(light)
         if self._lenses is not None:
             light = change_light(light, trackers, self._lenses)
         if self._defocus is not None:
