@@ -15,9 +15,9 @@ from eyas.gpu.render.stages import (
     ROWS,
     Shares,
     cast_lights,
-    copy_filtered,
     fill_triangles,
     filter_columns,
+    filter_rows,
     find_triangles,
     list_views,
     look_for_clusters,
@@ -127,9 +127,9 @@ class DeviceRenderer:
             launch(cast_lights, many)
             launch(shade, many)
         if tent and len(output.rgb) > 0 and until == DrawStage.SHADING:
-            columns = size.views * -(-size.height // ROWS) * 3 * size.width
-            for stage in (filter_columns, copy_filtered):
-                device.launch(stage, columns, held, bundles[4])
+            pieces = size.views * -(-size.height // ROWS) * -(-size.width // WIDTH)
+            device.launch(filter_rows, pieces, held, bundles[4], threads=WIDTH)
+            device.launch(filter_columns, pieces, held, bundles[4], threads=WIDTH)
         measured = len(output.subject) + len(output.actor) > 0
         if measured:
             device.clear(scratch.alone)

@@ -14,19 +14,30 @@ from numpy.typing import NDArray
 from eyas.engine.render.kernels.bundles import Band, Geometry, Light, Movers, Output, Scratch, Task
 from eyas.engine.render.kernels.draw import band_of, light_at, no_glass, write_colours, write_facts
 from eyas.engine.render.kernels.light.casters import cast_light
-from eyas.engine.render.kernels.scalars import i8
-from eyas.engine.render.kernels.tent import MIDDLE, ROUNDING, SHIFT, SIDE
+from eyas.engine.render.kernels.pixels import pack, write_pixels
+from eyas.engine.render.kernels.scalars import i4, i8, u4
+from eyas.engine.render.kernels.tent import ROUNDING, SHIFT, weighted
 from eyas.engine.render.kernels.visibility.items import draw_clusters, find_clusters, list_items
 from eyas.engine.render.kernels.visibility.records import fill_recorded
 from eyas.engine.render.kernels.visibility.transform import view_of
 from eyas.lanes import ParallelCall, address_of, kernel, parallel, specialised
+from eyas.lanes.vector import (
+    WIDTH,
+    gather,
+    greater,
+    lane_numbers,
+    lesser,
+    load_words,
+    store_words,
+    to_u4,
+)
 
 __all__ = [
     "Shares",
     "cast_lights",
-    "copy_filtered",
     "fill_triangles",
     "filter_columns",
+    "filter_rows",
     "find_triangles",
     "list_views",
     "look_for_clusters",
@@ -136,61 +147,83 @@ shade = _over_views(_shade)
 tell_facts = _over_views(_tell)
 
 
-# The tent filter, see `eyas.engine.render.kernels.tent`: a worker is one thread, and does a column
-# of bytes. It writes into `Scratch.shade`, which shading has read, as others need what it replaces.
+# The tent filter, see `eyas.engine.render.kernels.tent`, of eight columns at once: sums along rows
+# are kept in `Scratch.shade`, which shading has read, ten bits for each colour of a pixel.
 
-ROWS = 16  # Rows of a picture that a worker does
+ROWS = 32  # Rows of a picture that a worker does
+
+_TEN = u4(0x3FF)
+_ENDS = u4(0x3FF | 0x3FF << 20)  # Red and blue
+_HALF = u4(ROUNDING)
+_HALVES = u4(ROUNDING | ROUNDING << 20)
 
 
-@kernel(inline=True)
-def _piece(item: int, output: Output) -> tuple[int, int, int, int]:
-    """Return the view of an item, its column of bytes, its first row, and the row after these."""
-    height, count = output.rgb.shape[1], 3 * output.rgb.shape[2]
-    number, column = item // count, item % count
-    pieces = (height + ROWS - 1) // ROWS
-    first = number % pieces * ROWS
-    return number // pieces, column, first, min(first + ROWS, height)
+class _Piece(NamedTuple):
+    """What a worker filters."""
+
+    of: int  # The view
+    column: int  # The first
+    top: int  # The first row, and the row after the last
+    bottom: int
 
 
 @kernel(inline=True)
 def _pieces(output: Output) -> int:
-    """Return how many columns of so many rows there are in all views."""
-    views, height, width, channels = output.rgb.shape
-    return int(views * ((height + ROWS - 1) // ROWS) * width * channels)
+    """Return the number of pieces of all views."""
+    views, height, width, _ = output.rgb.shape
+    return int(views * ((height + ROWS - 1) // ROWS) * ((width + WIDTH - 1) // WIDTH))
 
 
 @kernel(inline=True)
-def _across(pixels: NDArray[np.uint8], row: int, column: int) -> int:
-    """Return the weighted sum of a byte of a row and of those of the pixels beside it."""
-    last = 3 * pixels.shape[1] - 3
-    left = column - 3 if column >= 3 else column
-    right = column + 3 if column < last else column
-    own = i8(pixels[row, column // 3, column % 3])
-    beside = i8(pixels[row, left // 3, left % 3]) + i8(pixels[row, right // 3, right % 3])
-    return SIDE * beside + MIDDLE * own
+def _piece(item: int, output: Output) -> _Piece:
+    """Return a piece."""
+    height, groups = output.rgb.shape[1], (output.rgb.shape[2] + WIDTH - 1) // WIDTH
+    number, pieces = item // groups, (height + ROWS - 1) // ROWS
+    top = number % pieces * ROWS
+    return _Piece(number // pieces, item % groups * WIDTH, top, min(top + ROWS, height))
+
+
+@kernel(inline=True)
+def _across(line: NDArray[np.uint8], left: int, own: int, right: int) -> int:
+    """Return the sums of one colour of eight pixels and of those beside them."""
+    return weighted(gather(line, left), gather(line, own), gather(line, right))
+
+
+@parallel
+def filter_rows(worker: int, workers: int, scratch: Scratch, output: Output) -> None:
+    """Write the sums along rows of all views."""
+    width = output.rgb.shape[2]
+    for item in range(worker, _pieces(output), workers):
+        piece = _piece(item, output)
+        pixels, sums = output.rgb[piece.of], scratch.shade[piece.of]
+        column = lane_numbers() + i4(piece.column)
+        own = lesser(column, i4(width - 1)) * i4(3)
+        left = greater(own - i4(3), i4(0))
+        right = lesser(own + i4(3), i4(3 * width - 3))
+        for row in range(piece.top, piece.bottom):
+            red = _across(pixels[row], left, own, right)
+            green = _across(pixels[row], left + i4(1), own + i4(1), right + i4(1))
+            blue = _across(pixels[row], left + i4(2), own + i4(2), right + i4(2))
+            packed = to_u4(red | (green << u4(10)) | (blue << u4(20)))
+            store_words(sums[row], 4 * piece.column, packed)
 
 
 @parallel
 def filter_columns(worker: int, workers: int, scratch: Scratch, output: Output) -> None:
-    """Filter the bytes of all views, into `Scratch.shade`."""
-    height = output.rgb.shape[1]
+    """Write the bytes of all views, of the sums along rows."""
+    height, width = output.rgb.shape[1], output.rgb.shape[2]
     for item in range(worker, _pieces(output), workers):
-        view, column, first, last = _piece(item, output)
-        pixels, filtered = output.rgb[view], scratch.shade[view]
-        above = _across(pixels, max(first - 1, 0), column)
-        own = _across(pixels, first, column)
-        for row in range(first, last):
-            below = _across(pixels, min(row + 1, height - 1), column)
-            mean = (SIDE * (above + below) + MIDDLE * own + ROUNDING) >> SHIFT
-            filtered[row, column // 4, column % 4] = mean
+        piece = _piece(item, output)
+        pixels, sums = output.rgb[piece.of], scratch.shade[piece.of]
+        begin, chosen = 4 * piece.column, (1 << min(width - piece.column, WIDTH)) - 1
+        above = load_words(sums[max(piece.top - 1, 0)], begin)
+        own = load_words(sums[piece.top], begin)
+        for row in range(piece.top, piece.bottom):
+            below = load_words(sums[min(row + 1, height - 1)], begin)
+            ends = weighted(above & _ENDS, own & _ENDS, below & _ENDS) + _HALVES
+            ten = u4(10)
+            middle = weighted((above >> ten) & _TEN, (own >> ten) & _TEN, (below >> ten) & _TEN)
+            green = to_u4(middle + _HALF) >> u4(SHIFT)
+            red, blue = (to_u4(ends) >> u4(SHIFT)) & u4(255), to_u4(ends) >> u4(20 + SHIFT)
+            write_pixels(pixels, row, piece.column, chosen, pack(red, green, blue))
             above, own = own, below
-
-
-@parallel
-def copy_filtered(worker: int, workers: int, scratch: Scratch, output: Output) -> None:
-    """Copy what `filter_columns` has written to where it belongs."""
-    for item in range(worker, _pieces(output), workers):
-        view, column, first, last = _piece(item, output)
-        pixels, filtered = output.rgb[view], scratch.shade[view]
-        for row in range(first, last):
-            pixels[row, column // 3, column % 3] = filtered[row, column // 4, column % 4]

@@ -163,9 +163,9 @@ def _add_across(line: NDArray[np.uint8], total: NDArray[np.uint32]) -> None:
     for word in range(0, words, WIDTH):
         at = 4 * word
         left, own, right = load_words(line, at), load_words(line, at + 3), load_words(line, at + 6)
-        store(total, word, _weighted(left & _HALVES, own & _HALVES, right & _HALVES))
+        store(total, word, weighted(left & _HALVES, own & _HALVES, right & _HALVES))
         left, own, right = left >> u4(8), own >> u4(8), right >> u4(8)
-        store(total, words + word, _weighted(left & _HALVES, own & _HALVES, right & _HALVES))
+        store(total, words + word, weighted(left & _HALVES, own & _HALVES, right & _HALVES))
 
 
 @kernel
@@ -208,12 +208,12 @@ def _mean_down(
 @kernel(inline=True)
 def _mean(above: int, middle: int, below: int) -> int:
     """Return two bytes in each lane."""
-    return ((_weighted(above, middle, below) + _ROUNDINGS) >> u4(SHIFT)) & _HALVES
+    return ((weighted(above, middle, below) + _ROUNDINGS) >> u4(SHIFT)) & _HALVES
 
 
 @kernel(inline=True)
-def _weighted(before: int, own: int, after: int) -> int:
-    """Return two sums in each lane."""
+def weighted(before: int, own: int, after: int) -> int:
+    """Return weighted sums of whole numbers, two in each lane."""
     return (before + after) * u4(SIDE) + own * u4(MIDDLE)
 
 
