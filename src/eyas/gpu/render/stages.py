@@ -21,16 +21,7 @@ from eyas.engine.render.kernels.visibility.items import draw_clusters, find_clus
 from eyas.engine.render.kernels.visibility.records import fill_recorded
 from eyas.engine.render.kernels.visibility.transform import view_of
 from eyas.lanes import ParallelCall, address_of, kernel, parallel, specialised
-from eyas.lanes.vector import (
-    WIDTH,
-    gather,
-    greater,
-    lane_numbers,
-    lesser,
-    load_words,
-    store_words,
-    to_u4,
-)
+from eyas.lanes.vector import WIDTH, gather, lane_numbers, load_words, select, store_words, to_u4
 
 __all__ = [
     "Shares",
@@ -196,10 +187,10 @@ def filter_rows(worker: int, workers: int, scratch: Scratch, output: Output) -> 
     for item in range(worker, _pieces(output), workers):
         piece = _piece(item, output)
         pixels, sums = output.rgb[piece.of], scratch.shade[piece.of]
-        column = lane_numbers() + i4(piece.column)
-        own = lesser(column, i4(width - 1)) * i4(3)
-        left = greater(own - i4(3), i4(0))
-        right = lesser(own + i4(3), i4(3 * width - 3))
+        own, last = (lane_numbers() + i4(piece.column)) * i4(3), i4(3 * width - 3)
+        own = select(own < last, own, last)
+        left = select(own > i4(0), own - i4(3), own)
+        right = select(own < last, own + i4(3), own)
         for row in range(piece.top, piece.bottom):
             red = _across(pixels[row], left, own, right)
             green = _across(pixels[row], left + i4(1), own + i4(1), right + i4(1))
