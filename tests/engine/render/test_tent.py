@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+import eyas.engine.render.kernels.tent as module
 from eyas.engine.camera.config import CameraConfig
 from eyas.engine.render.kernels.tent import filter_light, filter_pixels
 from eyas.engine.state.draw import DrawStage, Picture
@@ -24,11 +25,12 @@ def tented(rgb):
 @pytest.mark.parametrize("threads", [1, 2, 5])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_sums_are_exact_in_pictures_of_any_shape_and_bands(monkeypatch, shape, threads):
-    monkeypatch.setattr("eyas.engine.render.kernels.tent.PIXELS_PER_THREAD", 20)
+    monkeypatch.setattr(module, "PIXELS_PER_THREAD", 20)
+    monkeypatch.setattr(module, "thread_count", lambda: threads)
     rgb = np.random.default_rng(3).integers(0, 256, (*shape, 3)).astype(np.uint8)
     room = np.full((shape[0] + 2, *rgb.shape[1:]), 77, np.uint8)
     room[1:-1] = rgb
-    filter_pixels(room[1:-1], threads)
+    filter_pixels(room[1:-1])
     np.testing.assert_array_equal(room[1:-1], tented(rgb))
     assert (room[[0, -1]] == 77).all()  # nothing beside them is written
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.scalars import f4, i8, u4
-from eyas.lanes import PackedBundle, kernel, parallel, thread_count
+from eyas.lanes import kernel, parallel, thread_count
 from eyas.lanes.vector import WIDTH, load, load_words, store, store_words
 
 PIXELS_PER_THREAD = 100_000
@@ -27,8 +27,6 @@ SIDE, MIDDLE, PARTS = 1, 2, 2  # Weights along a row, or a column; their sum as 
 
 SHIFT, ROUNDING = 2 * PARTS, 1 << 2 * PARTS - 1  # Bits of a sum's fraction, and a half
 
-_SIZES = 4  # Sizes of pictures for which memory is kept
-
 _BYTES = 4 * WIDTH  # Bytes in lanes
 
 _HALVES = u4(0x00FF00FF)  # The even bytes of four
@@ -36,54 +34,30 @@ _HALVES = u4(0x00FF00FF)  # The even bytes of four
 _ROUNDINGS = u4(ROUNDING * 0x00010001)
 
 
-class _Pixels(NamedTuple):
-    """What is filtered."""
+class _Work(NamedTuple):
+    """Bands that are filtered, and memory of K workers."""
 
     rgb: NDArray[np.uint8]  # Shape (P, H, W, 3)
-
-
-class _Work(NamedTuple):
-    """How the work is shared, and its memory."""
-
-    band: NDArray[np.int64]  # Picture, first row, last row + 1 of each band, shape (J, 3)
+    band: NDArray[np.int64]  # Picture, first row, last row + 1 of each, shape (J, 3)
     edge: NDArray[np.uint8]
-    """The rows above and below each band, before either is written; none counts at the border of a
-    picture, whose own row stands for it, shape (J, 2, W, 3)."""
+    """The rows above and below each, before either is written, shape (J, 2, W, 3)."""
     line: NDArray[np.uint8]
-    """Two rows of each worker by turns, with a pixel more at either end, shape (K, 2, bytes)."""
+    """Two rows by turns, with a pixel more at either end, shape (K, 2, bytes)."""
     total: NDArray[np.uint32]
     """Sums along three rows by turns, of even and of odd bytes, shape (K, 3, 2, words)."""
 
 
-_kept: dict[tuple[int, ...], PackedBundle[_Work]] = {}
-
-
-def filter_pixels(rgb: NDArray[np.uint8], threads: int | None = None) -> None:
+def filter_pixels(rgb: NDArray[np.uint8]) -> None:
     """Filter pictures, shape (P, H, W, 3), in place."""
     pictures, height, width = rgb.shape[:3]
-    workers = min(threads or thread_count(), 1 + pictures * height * width // PIXELS_PER_THREAD)
-    key = pictures, height, width, workers
-    # Taken away while it is in use, so that another thread gets another one.
-    held = _kept.pop(key, None) or PackedBundle(_work_of(*key))
-    band, edge = held.bundle.band, held.bundle.edge
-    if len(band) > pictures:
-        beside = np.clip(band[:, 1:] + [-1, 0], 0, height - 1)
-        edge[:] = rgb[band[:, :1], beside]
-    _filter(workers, PackedBundle(_Pixels(rgb)), held)
-    if len(_kept) >= _SIZES:
-        _kept.clear()
-    _kept[key] = held
-
-
-def _work_of(pictures: int, height: int, width: int, workers: int) -> _Work:
-    """Return bands of so many pictures, and memory for them."""
+    workers = min(thread_count(), 1 + pictures * height * width // PIXELS_PER_THREAD)
     bands = min(-(-workers // max(pictures, 1)), height)
-    edges = np.arange(bands + 1) * height // bands
-    band = np.empty((pictures, bands, 3), np.int64)
-    band[:, :, 0] = np.arange(pictures)[:, None]
-    band[:, :, 1], band[:, :, 2] = edges[:-1], edges[1:]
-    edge = np.empty((pictures * bands, 2, width, 3), np.uint8)
-    return _Work(band.reshape(-1, 3), edge, *memory(workers, width))
+    picture, number = np.divmod(np.arange(pictures * bands), bands)
+    ends = np.stack((number, number + 1)) * height // bands
+    above, below = np.maximum(ends[0] - 1, 0), np.minimum(ends[1], height - 1)
+    edge = np.stack((rgb[picture, above], rgb[picture, below]), axis=1)
+    band = np.stack((picture, *ends), axis=1)
+    _filter(workers, _Work(rgb, band, edge, *memory(workers, width)))
 
 
 def memory(workers: int, width: int) -> tuple[NDArray[np.uint8], NDArray[np.uint32]]:
@@ -94,18 +68,12 @@ def memory(workers: int, width: int) -> tuple[NDArray[np.uint8], NDArray[np.uint
 
 
 @parallel
-def _filter(worker: int, workers: int, pixels: _Pixels, work: _Work) -> None:
+def _filter(worker: int, workers: int, work: _Work) -> None:
     """Filter the bands whose turn is this worker's."""
+    line, total = work.line[worker], work.total[worker]
     for index in range(worker, work.band.shape[0], workers):
         picture, first, last = work.band[index]
-        filter_rows(
-            pixels.rgb[picture],
-            work.edge[index],
-            work.line[worker],
-            work.total[worker],
-            first,
-            last,
-        )
+        filter_rows(work.rgb[picture], work.edge[index], line, total, first, last)
 
 
 @kernel
@@ -117,7 +85,8 @@ def filter_rows(
     first: int,
     last: int,
 ) -> None:
-    """Filter rows from the first on, up to the last, excluded.
+    """Filter rows from the first on, up to the last, excluded; those at the border of the picture
+    stand for what is beyond it.
 
     A row is copied one turn before it is added up, since what has just been stored is not yet in
     the cache, from which the bytes beside each are loaded.
