@@ -92,6 +92,7 @@ def test_an_area_covers_the_ground_inside_its_corners_and_nothing_else(plain, pa
 
 def test_a_line_far_away_keeps_its_width(plain, painted):
     views = looking([(0.0, 0.0, 6.0)], pitch=0.1, fov=FOV)
+    views.tent = False  # so that one pixel says how bright the ground below the line is
     far = np.array([[150.0, -200.0], [3000.0, -200.0], [3000.0, 200.0], [150.0, 200.0]])
     before, after = painted(plain, views, Overlay(areas=(ground_area(far),)))
     assert 150 * 0.14 / 6 < 20  # the line, 0.14 m wide, would be a thirtieth of a pixel

@@ -203,12 +203,14 @@ def test_light_of_cars_does_not_depend_on_where_a_picture_begins(drawn, renderer
     put_car(cars, 0, 6, 1, 4.0, 4.0, -0.5)  # their beams cross
     renderer = renderer_of(scene_of([paper()], [0]), car_parts(), lighting=DARK)
     wide = looking([(6.0, 0.0, 40.0)], pitch=np.pi / 2, fov=1.0)
+    wide.tent = False
     whole = drawn(renderer, wide, cars, (80, 90)).rgb[0].astype(int)
     assert ((whole > 20) & (whole < 240)).mean() > 0.1
     for width in (36, 44, 58, 84):
         fov = 2 * np.arctan(np.tan(0.5) * width / 90)
         views = looking([(6.0, 0.0, 40.0)], pitch=np.pi / 2, fov=fov)
         views.vertical_field_of_view = 2 * np.arctan(np.tan(0.5) * 80 / 90)
+        views.tent = False
         part = drawn(renderer, views, cars, (80, width)).rgb[0]
         left = (90 - width) // 2
         assert np.abs(part - whole[:, left : left + width]).max() <= 1

@@ -179,6 +179,7 @@ def test_the_veil_is_as_thick_as_webots_fog(renderer_of, drawn, power):
 def test_four_samples_smooth_edges_and_leave_depth_and_ids_alone(renderer_of, drawn):
     renderer = renderer_of(scene_of([floor(), tower(30.0, 3.0, 9.0, 12.0)], [GROUND, TOWER]))
     views = looking([(0.0, 0.0, 5.0)], yaw=0.1, pitch=0.1, fov=FOV)
+    views.tent = False
     one, four = drawn(renderer, views), drawn(renderer, views, samples=4)
     np.testing.assert_array_equal(one.depth, four.depth)
     np.testing.assert_array_equal(one.object_id, four.object_id)

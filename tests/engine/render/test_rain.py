@@ -163,6 +163,7 @@ def test_daytime_lamps_glow_and_light_nothing(drawn, renderer_of):
     )
     scene = scene_of([lamp, ground("asphalt")], [0, 1])
     views = looking([(0, 0, 2.0)], fov=0.9)
+    views.tent = False
     off, on = (drawn(renderer_of(scene, lighting=light), views) for light in (DRY, glowing))
     there = off.depth[0] < 10.5
     lit = there & (off.rgb[0] != on.rgb[0]).any(axis=2)

@@ -62,6 +62,7 @@ def test_the_shadow_of_a_tower_lies_where_the_sun_says(geometry, tmp_path):
 def test_pictures_are_dark_in_the_shadow_and_nowhere_else(renderer_of, drawn):
     renderer = renderer_of(scene_of([floor(200.0, "plain"), tower(0, 0, 10, 20)], [GROUND, TOWER]))
     views = looking([(0.0, 0.0, 80.0)], pitch=np.pi / 2, fov=0.9)
+    views.tent = False
     picture = drawn(renderer, views)
     ray = rays(views.rotation[0], 128, 96, 0.9)
     x, y = (80.0 / -ray[..., 2] * np.moveaxis(ray[..., :2], -1, 0)).reshape(2, -1)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.core.config import validated
+from eyas.engine.render.kernels.tent import filter_pixels
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.worlds import each_alone
@@ -52,6 +53,24 @@ def test_what_is_random_does_not_depend_on_which_episodes_are_shown():
         for simulation in (shown, unseen):
             simulation.reset(trackers)
     np.testing.assert_array_equal(picture_of(unseen).rgb, picture_of(shown).rgb)
+
+
+def test_pixels_are_filtered_as_by_the_renderer_or_before_a_sensor_counts_them():
+    plain, modelled, sharp = (
+        picture_of(simulation_of(**camera)).rgb
+        for camera in ({}, {"defocus": 1e-9}, {"pixel_filter": "box"})
+    )
+    np.testing.assert_array_equal(plain, modelled)
+    assert (plain != sharp).any()
+    filter_pixels(sharp)
+    np.testing.assert_array_equal(plain, sharp)
+    sensor = {"full_well": 1e6, "read_noise": 0.0}
+    tent, box = (
+        picture_of(simulation_of(imager=sensor, pixel_filter=which)).rgb.astype(int)
+        for which in ("tent", "box")
+    )
+    steps = [np.abs(np.diff(rgb, axis=2)).mean() for rgb in (tent, box)]
+    assert steps[0] < 0.8 * steps[1]
 
 
 def test_ids_are_those_of_the_clean_picture():

@@ -49,7 +49,8 @@ def behind(world: StillWorld, time: float, actor: int) -> Views:
     ahead, left = np.array([np.cos(yaw), np.sin(yaw), 0]), np.array([-np.sin(yaw), np.cos(yaw), 0])
     eye = state.position[0, actor] - 8.0 * ahead + [0, 0, 1.2]
     axes = np.stack([ahead, left, np.array([0.0, 0.0, 1.0])], axis=-1)
-    return Views(eye[None], axes[None], np.zeros(1, np.int32), np.zeros(1, np.int32) - 1, 0.8)
+    one = np.zeros(1, np.int32)
+    return Views(eye[None], axes[None], one, one - 1, 0.8, tent=False)
 
 
 @pytest.mark.parametrize("weather", ["day", "night"])

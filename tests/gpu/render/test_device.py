@@ -168,3 +168,10 @@ def test_lenses_are_refused(renderers):
     renderer = ReadBackRenderer(HostDevice(), renderers["day"])
     with pytest.raises(ConfigError, match=r"^device: lenses"):
         renderer.draw(bent, city_traffic(1), Picture.create(3, 40, 52))
+
+
+@pytest.mark.parametrize(("samples", "tent"), [(1, False), (4, True)])
+def test_pixels_are_filtered_where_that_is_asked_for(renderers, samples, tent):
+    views = dataclasses.replace(street(), tent=tent)
+    device = HostDevice(5, np.random.default_rng(7))
+    assert differences(device, renderers["day"], views, city_traffic(1), samples=samples) == []

@@ -66,6 +66,9 @@ class CameraConfig(Config):
     """Horizontal [rad]; a variation is sampled anew for each tracker at each reset."""
     samples: Literal[1, 2, 4] = 1
     """Samples per pixel."""
+    pixel_filter: Literal["box", "tent"] | None = None
+    """What a pixel is the mean of: `box`, its samples; `tent`, those of its neighbours, too, by a
+    quarter from either side along rows and columns; None: `tent` where it has fewer than four."""
     mount: MountConfig | None = None
     """Where it is fixed to the body, so that it tilts with it; None: the tracker carries it, on a
     drone by a gimbal."""
@@ -100,6 +103,11 @@ class CameraConfig(Config):
     def needs_velocities(self) -> bool:
         """Whether the velocities of cameras must be known."""
         return self.shutter.blur or self.shutter.rolls or self.events.enabled
+
+    @property
+    def tent(self) -> bool:
+        """Whether pictures go through a tent filter."""
+        return self.samples < 4 if self.pixel_filter is None else self.pixel_filter == "tent"
 
     @property
     def sensor(self) -> ImagerConfig | None:

@@ -33,6 +33,7 @@ class Size(NamedTuple):
     threads: int  # Number of threads that share the work
     bent: bool = False  # Whether lenses bend the pictures
     timed: bool = False  # Whether the views have instants
+    tent: bool = False  # Whether bytes go through the tent filter
 
 
 def new_task(size: Size) -> Task:
@@ -52,7 +53,10 @@ def new_task(size: Size) -> Task:
         focal=np.empty((views, 2)),
         lens=np.zeros(views if size.bent else 0, np.int32),
     )
-    return Task(size.across, size.down, size.width, size.height, int(size.falls), size.until, job)
+    return Task(
+        size.across, size.down, size.width, size.height, int(size.falls), size.until, job,
+        int(size.tent and len(job.band) == views and not size.parts),
+    )  # fmt: skip
 
 
 def set_views(

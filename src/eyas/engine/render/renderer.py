@@ -19,6 +19,7 @@ from eyas.engine.render.jobs import Size, new_task, set_views
 from eyas.engine.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
 from eyas.engine.render.kernels.draw import draw_views
 from eyas.engine.render.kernels.light.casters import influence
+from eyas.engine.render.kernels.tent import filter_pixels, memory
 from eyas.engine.render.kernels.visibility.clusters import CLUSTER
 from eyas.engine.render.kernels.visibility.fill import SPAN_ROWS
 from eyas.engine.render.kernels.visibility.items import ITEM_COLUMNS
@@ -117,10 +118,12 @@ class CpuRenderer:
         timed, threads = views.instant is not None, thread_count()
         falls = timed and views.falling
         parts = views.rows is not None
+        coloured = until == DrawStage.SHADING and len(output.rgb) > 0
+        tent = coloured and views.filters(grid[0] * grid[1])
         bent = views.lens is not None
         size = Size(
             len(views.position), height, width, *grid, int(until), falls, parts, threads,
-            bent, timed,
+            bent, timed, tent,
         )  # fmt: skip
         # Taken away while it is in use, so that another thread that draws gets another one.
         task = self._tasks.pop(size, None) or PackedBundle(new_task(size))
@@ -144,6 +147,8 @@ class CpuRenderer:
         held = last[0].again(movers), last[1].again(output), last[2].again(tables)
         self._last = held
         draw_views(workers, *self._held, scratch, *held[:2], task, held[2])
+        if tent and not task.bundle.tent:
+            filter_pixels(output.rgb)
         if wanted:
             write_measured(task.bundle.job, output, picture)
         _keep(self._tasks, size, task)
@@ -175,6 +180,7 @@ class CpuRenderer:
             # What is measured alone takes rows after those of the whole picture.
             instances = min(fixtures + slots * (2 if measured else 1), MOST_INSTANCES)
             swaying = instances if len(self._light.sway) else 0
+            line, total = memory(workers, width)
             scratch = Scratch(
                 key=np.zeros(plane, np.int64),
                 alone=np.zeros(plane if measured else (workers, 0, 0), np.int64),
@@ -198,6 +204,8 @@ class CpuRenderer:
                 record_shown=np.empty((workers, 0, 2), np.int64),
                 unit=np.empty((workers, 0), np.int32),
                 recorded=np.empty((workers, 0), np.int64),
+                line=line,
+                total=total,
                 bent_tile=np.zeros((0, 0, 4), np.int32),
             )
             _keep(self._scratch, key, PackedBundle(scratch))

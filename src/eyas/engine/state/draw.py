@@ -111,6 +111,9 @@ class Views:
     """Time at which what falls and what the wind moves is shown [s], shape (V,); None: nothing
     falls, and the air is calm."""
     falling: bool = True  # Whether flakes, drops and leaves are drawn at that time
+    tent: bool | None = None
+    """Whether bytes of colours go through a tent filter, see `eyas.engine.render.kernels.tent`;
+    None: where a pixel has fewer than four samples."""
     lens: NDArray[np.float64] | None = None
     """Numbers of the lens of each view, see `eyas.engine.core.optics.lens.Lens`, shape (V, 10);
     None: all are pinholes. Fields of view are then those of pinholes with the same focal
@@ -121,6 +124,10 @@ class Views:
     rows: NDArray[np.int32] | None = None
     """First row of its picture that each view draws, and the row after the last, shape (V, 2);
     None: all rows."""
+
+    def filters(self, samples: int) -> bool:
+        """Return whether colours of so many samples a pixel go through a tent filter."""
+        return samples < 4 if self.tent is None else self.tent
 
     def fields_of(self, view: int) -> tuple[float, float | None]:
         """Return the horizontal and the vertical field of view of one view [rad]."""

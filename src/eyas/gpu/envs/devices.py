@@ -2,6 +2,7 @@
 
 import re
 
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.render.renderer import CpuRenderer
 from eyas.engine.state.draw import Renderer
@@ -41,10 +42,10 @@ def device_of(wanted: Device | str) -> Device:
 def drawer_of(
     device: Device,
     renderer: Renderer,  # What draws the same on this processor
-    samples: int,  # Samples per pixel
+    camera: CameraConfig,  # Samples per pixel, and their filter
 ) -> DeviceDrawer:
     """Return what draws on a device."""
     if isinstance(device, HostDevice):
-        return HostRenderer(renderer, samples)
+        return HostRenderer(renderer, camera.samples, tent=camera.tent)
     assert isinstance(renderer, CpuRenderer)
-    return StagedDrawer(device, *renderer.packed, samples)
+    return StagedDrawer(device, *renderer.packed, camera.samples, tent=camera.tent)

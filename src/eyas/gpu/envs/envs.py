@@ -230,7 +230,7 @@ class DeviceEnvs:
                 repeat=config.env.action_repeat,
                 gimbal=config.env.actions.gimbal,
             )
-        drawer = drawer_of(where, assets.renderer, config.camera.samples)
+        drawer = drawer_of(where, assets.renderer, config.camera)
         view = DeviceView(simulation, drawer)
         self._observer = DeviceObserver(seen, simulation, view, measures=measures)
         actions = make_actions(config.env)

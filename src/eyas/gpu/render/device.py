@@ -12,9 +12,12 @@ from eyas.engine.render.kernels.visibility.key import MOST_INSTANCES
 from eyas.engine.render.kernels.visibility.triangles import TRIANGLE_ROWS
 from eyas.engine.state.draw import DrawStage
 from eyas.gpu.render.stages import (
+    ROWS,
     Shares,
     cast_lights,
     fill_triangles,
+    filter_columns,
+    filter_rows,
     find_triangles,
     list_views,
     look_for_clusters,
@@ -91,6 +94,7 @@ class DeviceRenderer:
         *,
         falls: int = 0,  # See `Task`
         until: DrawStage = DrawStage.SHADING,  # Last stage to run, to measure the cost of each
+        tent: bool,  # See `Views`
     ) -> None:
         """Draw views into the arrays of `output` that are not empty, all on the device."""
         device, slots = self._device, movers.part.shape[1]
@@ -122,6 +126,10 @@ class DeviceRenderer:
         if coloured and until > DrawStage.RASTERISING:
             launch(cast_lights, many)
             launch(shade, many)
+        if tent and len(output.rgb) > 0 and until == DrawStage.SHADING:
+            pieces = size.views * -(-size.height // ROWS) * -(-size.width // WIDTH)
+            device.launch(filter_rows, pieces, held, bundles[4], threads=WIDTH)
+            device.launch(filter_columns, pieces, held, bundles[4], threads=WIDTH)
         measured = len(output.subject) + len(output.actor) > 0
         if measured:
             device.clear(scratch.alone)
@@ -165,6 +173,8 @@ class DeviceRenderer:
             record_shown=device.empty((views, records, 2), np.int64),
             unit=device.empty((views, UNITS_PER_ROW * plane[1]), np.int32),
             recorded=device.zeros((views, 1), np.int64),
+            line=device.empty((0, 0, 0), np.uint8),
+            total=device.empty((0, 0, 0, 0), np.uint32),
             bent_tile=device.empty((0, 0, 4), np.int32),
         )
 

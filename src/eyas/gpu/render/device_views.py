@@ -71,11 +71,20 @@ class StagedDrawer:
         geometry: Everything that can be drawn.
         light: Light and air.
         samples: Samples per pixel.
+        tent: See `Views`.
     """
 
-    def __init__(self, device: Device, geometry: Geometry, light: Light, samples: int = 1) -> None:
+    def __init__(
+        self,
+        device: Device,
+        geometry: Geometry,
+        light: Light,
+        samples: int = 1,
+        *,
+        tent: bool = True,
+    ) -> None:
         self._device, self._geometry, self._light = device, geometry, light
-        self._grid = GRIDS[samples]
+        self._grid, self._tent = GRIDS[samples], tent
         self._made: dict[PictureSize, _Made] = {}
 
     def draw(
@@ -114,7 +123,7 @@ class StagedDrawer:
             made.cut = _with_cameras(made.job, cameras, timed=timed)
             made.output = _cut_output(*wanted, size.views)
         falls = int(timed and cameras.falling)
-        made.renderer.draw(size, made.cut, movers, made.output, falls=falls)
+        made.renderer.draw(size, made.cut, movers, made.output, falls=falls, tent=self._tent)
 
     def _new_job(self, size: PictureSize) -> Job:
         """Return a job without its cameras, for whole views."""

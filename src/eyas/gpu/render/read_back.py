@@ -31,6 +31,7 @@ class UploadedViews(NamedTuple):
     movers: Movers
     output: Output
     falls: int
+    tent: bool
 
 
 class ReadBackRenderer:
@@ -116,6 +117,7 @@ class ReadBackRenderer:
             movers,
             Output(*(device.zeros(array.shape, array.dtype) for array in output)),
             int(views.instant is not None and views.falling),
+            views.filters(samples),
         )
 
     def draw_uploaded(
@@ -124,8 +126,8 @@ class ReadBackRenderer:
         until: DrawStage = DrawStage.SHADING,  # Last stage to run
     ) -> None:
         """Draw into `given.output`; the device may be at it when this returns."""
-        size, job, movers, output, falls = given
-        self._renderer.draw(size, job, movers, output, falls=falls, until=until)
+        size, job, movers, output, falls, tent = given
+        self._renderer.draw(size, job, movers, output, falls=falls, until=until, tent=tent)
 
 
 def _arrays(output: Output) -> dict[str, NDArray[Any]]:

@@ -31,8 +31,10 @@ class HostRenderer:
         self,
         renderer: Renderer,  # What draws
         samples: int = 1,  # Samples per pixel
+        *,
+        tent: bool = True,  # See `Views`
     ) -> None:
-        self._renderer, self._samples = renderer, samples
+        self._renderer, self._samples, self._tent = renderer, samples, tent
 
     def draw(
         self,
@@ -52,6 +54,7 @@ class HostRenderer:
             light=LightState(*(array[:count] for array in cameras.light)),
             instant=cameras.instant[:count] if len(cameras.instant) else None,
             falling=cameras.falling,
+            tent=self._tent,
             lengths=cameras.focal[:count],
         )
         drawn = DrawList(**{array.name: getattr(movers, array.name) for array in fields(DrawList)})

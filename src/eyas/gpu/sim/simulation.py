@@ -143,7 +143,7 @@ class MirroredArray:
             self._device.write(self.array, known)
 
 
-_CAMERA = ("width", "height", "field_of_view", "samples", "mount")
+_CAMERA = ("width", "height", "field_of_view", "samples", "pixel_filter", "mount")
 """Settings of the camera that may have any value."""
 
 

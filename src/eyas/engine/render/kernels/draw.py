@@ -32,6 +32,7 @@ from eyas.engine.render.kernels.sky.plumes import draw_plumes
 from eyas.engine.render.kernels.sky.radiance import draw_backdrop
 from eyas.engine.render.kernels.surface.band import shade_band
 from eyas.engine.render.kernels.surface.normals import write_normals
+from eyas.engine.render.kernels.tent import filter_rows
 from eyas.engine.render.kernels.visibility.measure import measure_actors, measure_subject
 from eyas.engine.render.kernels.visibility.outputs import write_classes, write_depth, write_objects
 from eyas.engine.render.kernels.visibility.passes import draw_scene
@@ -67,6 +68,10 @@ def draw_views(
             )
         else:
             _draw_band(index, geometry, light, scratch, movers, output, task, worker)
+        if task.tent == 1:
+            pixels = output.rgb[job.picture[job.band[index, 0]]]
+            line, total = scratch.line[worker], scratch.total[worker]
+            filter_rows(pixels, pixels, line, total, 0, task.height)
         index = claim(job.begun)
 
 

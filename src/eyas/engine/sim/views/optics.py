@@ -21,6 +21,7 @@ from eyas.engine.camera.thermal import ThermalConfig, ThermalFrames, ThermalImag
 from eyas.engine.camera.tone import ToneCurve
 from eyas.engine.core.counter_rng import SEEDS
 from eyas.engine.core.variation import sample
+from eyas.engine.render.kernels.tent import filter_light, filter_pixels
 from eyas.engine.render.outputs import picture_size
 from eyas.engine.sim.assets import Assets
 from eyas.engine.state.draw import DrawList, Picture, Views
@@ -118,6 +119,7 @@ class CameraModel:
         self._blur = np.zeros(count)
         self._memory = np.empty((0, 3, 0, 0), np.float32)
         self._curve = ToneCurve(lighting.exposure)
+        self._tent = config.tent
         self._infrared = config.spectrum is Spectrum.NEAR_INFRARED
         self.development: Development | None = None
         if sensor is not None:
@@ -175,6 +177,8 @@ class CameraModel:
         if self._infrared:
             assert seen.class_id is not None
             near_infrared(light, seen.class_id)
+        if self._tent and self.development is not None:
+            filter_light(light)
         if self._lenses is not None:
             light = change_light(light, trackers, self._lenses)
         if self._defocus is not None:
@@ -183,6 +187,8 @@ class CameraModel:
             self._dirt.cover(light, trackers)
         if self.development is None:
             self._curve.develop(light, picture.rgb)
+            if self._tent:  # bytes, as the renderer does
+                filter_pixels(picture.rgb)
         else:
             self.development.develop(light, picture.rgb, trackers, step)
         self.send(trackers, step, picture.rgb)

@@ -66,7 +66,7 @@ class PictureDrawer:
         self._lenses = None if optics is None else optics.bent
         self._flakes = config.light.flakes
         self._timed = is_timed(config)
-        self._samples = config.camera.samples
+        self._samples, self._tent = config.camera.samples, config.camera.tent
         self._renderer = assets.renderer
         self._size = config.camera.height, config.camera.width
         self.aspect = config.camera.height / config.camera.width
@@ -218,6 +218,7 @@ class PictureDrawer:
             light=self._light.of(chosen),
             instant=instant,
             falling=self._flakes,
+            tent=self._tent,
             lens=None if lenses is None else lenses.numbers[chosen],
         )
         return views, movers

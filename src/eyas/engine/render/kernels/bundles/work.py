@@ -86,6 +86,8 @@ class Scratch(NamedTuple):
     unit: NDArray[np.int32]
     """A row of one of them: its number times 1,024, and which row; -1: none, shape (K, U)."""
     recorded: NDArray[np.int64]  # Rows asked for, in the upper half, and records, shape (K, 1)
+    line: NDArray[np.uint8]  # Rows of a picture, see `eyas.engine.render.kernels.tent.filter_rows`
+    total: NDArray[np.uint32]  # Their sums
     bent_tile: NDArray[np.int32]
     """What stands for `Glass.tile` where there is no lens, shape (0, 0, 4)."""
 
@@ -124,3 +126,4 @@ class Task(NamedTuple):
     falls: int  # 1: flakes, drops and leaves are drawn at the views' instants
     until: int  # The last `eyas.engine.state.draw.DrawStage`.
     job: Job
+    tent: int = 0  # 1: jobs draw whole pictures, and filter their bytes, see `tent.filter_rows`
