@@ -17,6 +17,7 @@ from eyas.engine.state.mesh import Material
 
 Points = tuple[tuple[float, float], ...]
 Range = tuple[float, float]
+Point = tuple[float, float, float]
 
 _WIDE_OF_BODY = 0.01  # Distance by which the mirrors stand out from the body on each side [m]
 
@@ -45,6 +46,8 @@ class CarShape:
     dark_bumpers: bool = False  # Whether the bumpers are not painted
     rack: bool = False  # Whether it has rails on the roof
     bed: Range | None = None  # Extent in x of an open bed behind the cab, under a dark cover
+    fittings: tuple[tuple[Material, Point, Point], ...] = ()
+    """Boxes that are fixed to it, on both sides: material, lowest and highest corner [m]."""
     pods: tuple[tuple[float, float, float], ...] = ()
     """Boxes on the roof: rear and front end (x) and top (z) [m]."""
 

@@ -241,11 +241,10 @@ def _rear(sheet: Sheet, kind: str) -> None:
     sheet.box((0.42, 0.04), (0.6, 0.1), 0.5)  # an exhaust
     sheet.line([(0.53, 0.44), (0.53, 0.75)], 0.03, _SEAM)
     if kind == "bus":  # the engine's grille, and lamps in a column
-        sheet.box((-0.1, 0.2), (0.52, 0.6), _BLACK)
-        for y in np.linspace(0.24, 0.56, 6):
-            sheet.line([(0.0, float(y)), (0.5, float(y))], 0.022, 0.45 * BASE)
-        for y in (0.3, 0.42, 0.54):
-            sheet.box((0.66, y - 0.05), (0.8, y + 0.05), 0.9)
+        sheet.box((-0.1, 0.17), (0.46, 0.4), _BLACK)
+        for y in np.linspace(0.2, 0.37, 5):
+            sheet.line([(0.0, float(y)), (0.44, float(y))], 0.016, 0.45 * BASE)
+        sheet.line([(0.58, 0.14), (0.58, 0.75)], 0.02, _SEAM, 0.8)
     elif kind == "van":
         sheet.line([(0.0, 0.1), (0.0, 0.75)], 0.04, _SEAM)
     else:
@@ -342,9 +341,9 @@ def freight() -> Texture:
         cab.line([(0.1, y), (0.75, y)], 0.05, 0.3 * BASE)
     _dirt(cab, 0.8, 0.4)
     unit = sheet_of(tones, COOLER, (2.0, 1.6))
-    for x in np.linspace(0.2, 1.8, 9):  # slats
-        unit.line([(float(x), 0.18), (float(x), 1.42)], 0.09, 0.2 * BASE)
-    unit.line([(0.1, 0.8), (1.9, 0.8)], 0.12, BASE)
+    for x in (0.55, 1.45):  # fans under grids
+        unit.box((x - 0.34, 0.4), (x + 0.34, 1.2), 0.4 * BASE, round_=0.34)
+        unit.box((x - 0.1, 0.68), (x + 0.1, 0.92), 0.8 * BASE, round_=0.1)
     unit.frame((0.0, 0.0), (2.0, 1.6), 0.05, 0.5 * BASE)
     return texture_of(tones)
 

@@ -1,6 +1,6 @@
 """A city bus."""
 
-from art.cars.finishes import TRIM
+from art.cars.finishes import TAIL_LAMP, TRIM, plain
 from art.cars.frame import Axle
 from art.cars.shape import CarShape
 from art.vehicles.car import car
@@ -22,6 +22,12 @@ _SHAPE = CarShape(
     tail_lamps=0.06,
     head_lamps=0.09,
     sill=TRIM,
+    fittings=(
+        (TAIL_LAMP, (-4.915, 0.93, 0.72), (-4.85, 1.09, 1.02)),
+        (TAIL_LAMP, (-4.875, 0.88, 2.68), (-4.80, 1.06, 2.78)),
+        (plain(0.05, 0.05, 0.05), (-4.882, 0.0, 2.50), (-4.80, 0.52, 2.74)),  # the route
+        (plain(0.85, 0.52, 0.10), (-4.885, 0.12, 2.55), (-4.80, 0.34, 2.69)),
+    ),
     pods=((-3.6, -1.2, 3.36), (1.4, 3.0, 3.30)),
     bodywork="bus",
 )  # fmt: skip

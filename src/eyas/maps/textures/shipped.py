@@ -17,7 +17,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.zip")
 
-SHA256 = "f14dd7bc92511c47b9b5e946ef53e17cf83e194f9349ccb930b8654d4a74114c"
+SHA256 = "a4ddcae728d5f1104c26565a1f26cc1ef55858bb21557266499fb38475c447cc"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 
