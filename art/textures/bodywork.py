@@ -341,9 +341,9 @@ def freight() -> Texture:
         cab.line([(0.1, y), (0.75, y)], 0.05, 0.3 * BASE)
     _dirt(cab, 0.8, 0.4)
     unit = sheet_of(tones, COOLER, (2.0, 1.6))
-    for x in (0.55, 1.45):  # fans under grids
-        unit.box((x - 0.34, 0.4), (x + 0.34, 1.2), 0.4 * BASE, round_=0.34)
-        unit.box((x - 0.1, 0.68), (x + 0.1, 0.92), 0.8 * BASE, round_=0.1)
+    for x in np.linspace(0.2, 1.8, 9):  # slats
+        unit.line([(float(x), 0.18), (float(x), 1.42)], 0.09, 0.2 * BASE)
+    unit.line([(0.1, 0.8), (1.9, 0.8)], 0.12, BASE)
     unit.frame((0.0, 0.0), (2.0, 1.6), 0.05, 0.5 * BASE)
     return texture_of(tones)
 

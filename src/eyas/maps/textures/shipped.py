@@ -17,7 +17,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.zip")
 
-SHA256 = "a4ddcae728d5f1104c26565a1f26cc1ef55858bb21557266499fb38475c447cc"
+SHA256 = "29b3547f38605ef651215f9a612a7b6cd285cb021deebea31eba8bfc6aae6431"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 
