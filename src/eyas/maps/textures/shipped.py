@@ -17,7 +17,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.zip")
 
-SHA256 = "29b3547f38605ef651215f9a612a7b6cd285cb021deebea31eba8bfc6aae6431"
+SHA256 = "80e97200cda7b1f0156cf30bf4b5d266997a066a9028f821ea451d35f2ee1581"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 
