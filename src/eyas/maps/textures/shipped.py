@@ -17,7 +17,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.zip")
 
-SHA256 = "80e97200cda7b1f0156cf30bf4b5d266997a066a9028f821ea451d35f2ee1581"
+SHA256 = "bf36664badcfc5f5e324a1c077656624d3b174921dc7f412178210111a2ee59f"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 
