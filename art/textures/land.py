@@ -76,8 +76,10 @@ def _rows(
     tuft = fractal(rng, 0.5, longest=14.0)
     cover = np.clip((width + 0.16 * tuft - across) * 4.0 + 0.5, 0, 1)
     # Plants shade the earth between them, the denser the more.
-    shade = 1.0 - 0.75 * width
-    earth = painted((122.0 * shade, 98.0 * shade, 70.0 * shade), 0.1 * fractal(rng, 0.6, longest=20.0))
+    shade = 1.0 - 0.65 * width
+    earth = painted(
+        (122.0 * shade, 98.0 * shade, 70.0 * shade), 0.1 * fractal(rng, 0.6, longest=20.0)
+    )
     growth = 0.14 * fractal(rng, 0.9, longest=70.0)
     plants = painted(leaf, np.clip(0.2 * tuft + 0.08 * white(rng) + growth, -0.7, 0.7))
     plants = mixed(plants, deep, np.clip(0.5 * across + 0.2 * fractal(rng, 0.4, longest=9.0), 0, 1))

@@ -106,8 +106,8 @@ def freight_box(
     below = [(end, HALF, floor), (front, HALF, floor), (front, -HALF, floor), (end, -HALF, floor)]
     shell.quads(below, TRIM)
     if detail:
-        high = facing(end - 0.012, (0.86, 1.16), (roof - 0.13, roof - 0.05))[::-1]
-        shell.quads(high, TAIL_LAMP, both_sides=True)
+        marker = facing(end - 0.012, (0.86, 1.16), (roof - 0.13, roof - 0.05))[::-1]
+        shell.quads(marker, TAIL_LAMP, both_sides=True)
 
 
 def _slice(back: float, front: float, half: float, z: float) -> NDArray[np.float64]:

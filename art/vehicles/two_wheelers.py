@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from art.cars.finishes import CLOTH, GLASS, HEAD_LAMP, PAINT, SKIN_WHITE, TAIL_LAMP, TRIM, plain
+from art.cars.finishes import CLOTH, GLASS, HEAD_LAMP, SKIN_WHITE, TAIL_LAMP, TRIM, plain
 from art.cars.frame import Axle
 from art.parts import levels_of
 from art.vehicles.vehicle import VehicleModel, vehicle

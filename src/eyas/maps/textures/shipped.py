@@ -17,7 +17,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.zip")
 
-SHA256 = "bf36664badcfc5f5e324a1c077656624d3b174921dc7f412178210111a2ee59f"
+SHA256 = "f64fc5d7a9e90b4e5f46e6dcdd81202580dff731d22b256a0001a0143388a74f"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 
