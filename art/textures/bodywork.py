@@ -41,7 +41,7 @@ _SOFT = 0.5
 above a car has soft lines and no ink."""
 
 _FILM = 0.06  # Deviation of the brightness of paint, as a share
-_DUST = 0.012  # Deviation of what dust adds to the brightness of panes
+_DUST = 0.06  # Deviation of what dust adds to the brightness of panes
 
 _LONG = 4.6  # Length of the body that is painted [m]
 
@@ -286,10 +286,10 @@ def panes() -> Texture:
     """
     tones = np.full((SIZE, SIZE), _GLASS)
     screen = sheet_of(tones, WINDSCREEN, (1.3, 0.75))
-    screen.box((-0.1, -0.1), (1.4, 0.2), 0.16)  # dashboard
+    screen.box((-0.1, -0.1), (1.4, 0.22), 0.22)  # dashboard
     for x in (0.37, 0.93):
-        screen.box((x - 0.2, 0.27), (x + 0.2, 0.56), 0.11, round_=0.08)  # seats
-        screen.box((x - 0.11, 0.58), (x + 0.11, 0.68), 0.13, round_=0.05)
+        screen.box((x - 0.2, 0.27), (x + 0.2, 0.56), 0.26, round_=0.08)  # seats
+        screen.box((x - 0.11, 0.58), (x + 0.11, 0.68), 0.3, round_=0.05)
     screen.line([(0.8, 0.2), (0.84, 0.3), (1.02, 0.3), (1.06, 0.2)], 0.035, 0.01)  # wheel
     screen.box((0.59, 0.62), (0.71, 0.68), 0.01)  # mirror
     for x in (0.25, 0.75):  # wipers
@@ -297,10 +297,10 @@ def panes() -> Texture:
     rear = sheet_of(tones, REAR_WINDOW, (1.2, 0.6))
     rear.box((-0.1, -0.1), (1.3, 0.16), 0.08)  # shelf
     for x in (0.3, 0.6, 0.9):
-        rear.box((x - 0.11, 0.2), (x + 0.11, 0.36), 0.09, round_=0.05)
+        rear.box((x - 0.11, 0.2), (x + 0.11, 0.36), 0.12, round_=0.05)
     side = sheet_of(tones, SIDE_PANE, (0.95, 0.4))
-    side.box((0.28, -0.1), (0.56, 0.2), 0.13, round_=0.08)
-    side.box((0.34, 0.2), (0.5, 0.31), 0.15, round_=0.05)
+    side.box((0.28, -0.1), (0.56, 0.2), 0.3, round_=0.08)
+    side.box((0.34, 0.2), (0.5, 0.31), 0.34, round_=0.05)
     for sheet, size, width in (
         (screen, (1.3, 0.75), 0.05), (rear, (1.2, 0.6), 0.07), (side, (0.95, 0.4), 0.035),
     ):  # fmt: skip

@@ -17,7 +17,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.zip")
 
-SHA256 = "f64fc5d7a9e90b4e5f46e6dcdd81202580dff731d22b256a0001a0143388a74f"
+SHA256 = "d48f2a51db3337cd622dacb0efe7884ff790b792a9adfe041e70c53ae4c124c2"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 
