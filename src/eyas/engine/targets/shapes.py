@@ -20,7 +20,7 @@ from eyas.engine.targets.posing import PoseCall
 
 FILE = Path(__file__).with_name("models.eya")
 
-SHA256 = "58121aef981091c1827ce499a0f39fbb9a203c904fcb47d6c4c73c114bb60d56"
+SHA256 = "c6d7f40454f26624cf979b6516c54b57eba589668991187afafa357adbdabbcf"
 """Of its index, which has the digests of all arrays: it stands for them in the keys of what is made
 of models."""
 
