@@ -99,8 +99,9 @@ def _body(frame: Frame, shape: CarShape, detail: _Detail, stations: NDArray[np.f
     if 3 not in detail.points:
         _lamp_panels(shell, shape, every[1], every[0])
         _lamp_panels(shell, shape, every[-2], every[-1])
-    for material, corner, opposite in shape.fittings if 3 in detail.points else ():
-        shell.box(corner, opposite, material, both_sides=True)
+    for material, x, (right, left), (low, high) in shape.fittings if 3 in detail.points else ():
+        corners = [(x, left, low), (x, right, low), (x, right, high), (x, left, high)]
+        shell.quads(corners, material, both_sides=True)
     if detail.arches:
         add_trimmings(shell, frame, shape)
         add_bumpers(shell, frame, shape, wrap, paint)

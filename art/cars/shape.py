@@ -17,7 +17,6 @@ from eyas.engine.state.mesh import Material
 
 Points = tuple[tuple[float, float], ...]
 Range = tuple[float, float]
-Point = tuple[float, float, float]
 
 _WIDE_OF_BODY = 0.01  # Distance by which the mirrors stand out from the body on each side [m]
 
@@ -46,8 +45,8 @@ class CarShape:
     dark_bumpers: bool = False  # Whether the bumpers are not painted
     rack: bool = False  # Whether it has rails on the roof
     bed: Range | None = None  # Extent in x of an open bed behind the cab, under a dark cover
-    fittings: tuple[tuple[Material, Point, Point], ...] = ()
-    """Boxes that are fixed to it, on both sides: material, lowest and highest corner [m]."""
+    fittings: tuple[tuple[Material, float, Range, Range], ...] = ()
+    """Upright rectangles behind it, on both sides: material, x, and ranges of y and z [m]."""
     pods: tuple[tuple[float, float, float], ...] = ()
     """Boxes on the roof: rear and front end (x) and top (z) [m]."""
 

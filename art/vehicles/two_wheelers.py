@@ -72,8 +72,8 @@ def _rider(shell: Shell, posture: Posture, detail: int) -> None:
     hip, chest, head = posture.hip, posture.chest, posture.head
     neck = tuple(0.55 * h + 0.45 * c for h, c in zip(head, chest, strict=True))
     shell.tube([hip, chest, neck], (0.16, 0.17, 0.08), CLOTH, sides=sides + 1)
-    across = (chest[0] + 0.01, 0.0, chest[2] + 0.06)
-    shell.ball(across, (0.14, 0.25, 0.12), CLOTH, rows=rows, sides=sides + 2)
+    across = (chest[0] + 0.01, 0.0, chest[2] + 0.04)
+    shell.ball(across, (0.14, 0.25, 0.1), CLOTH, rows=rows, sides=sides + 2)
     size = posture.head_radius
     shell.ball(head, (size, 0.85 * size, size), posture.helmet, rows=rows, sides=sides + 1)
     visor = (head[0] + 0.42 * size, 0.0, head[2] + 0.05 * size)

@@ -20,7 +20,7 @@ from eyas.engine.targets.posing import PoseCall
 
 FILE = Path(__file__).with_name("models.eya")
 
-SHA256 = "c6d7f40454f26624cf979b6516c54b57eba589668991187afafa357adbdabbcf"
+SHA256 = "a507ffacde91367264580edecbaf6db3ff8b56e6b901cd35a40c10568ba61952"
 """Of its index, which has the digests of all arrays: it stands for them in the keys of what is made
 of models."""
 

@@ -19,8 +19,8 @@ _ROOM = {"stairs": 3.6, "plant": 5.2, "cooler": 1.8, "coolers": 3.4, "duct": 4.6
 """Radius of the free circle that each unit needs [m]."""
 _SMALL = ("cooler", "vents", "skylights", "panels", "vents")
 _LARGE = ("coolers", "duct", "skylights", "cooler", "vents", "tank", "panels", "duct")
-_AREA_EACH = 105.0  # Roof area for each unit [m^2]
-_MOST = 18
+_AREA_EACH = 120.0  # Roof area for each unit [m^2]
+_MOST = 16
 _HIGH = 45.0  # Roofs above this height have a mast [m]
 _FROM_PARAPET = 1.3
 
