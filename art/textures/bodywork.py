@@ -41,7 +41,7 @@ _SOFT = 0.5
 above a car has soft lines and no ink."""
 
 _FILM = 0.06  # Deviation of the brightness of paint, as a share
-_DUST = 0.06  # Deviation of what dust adds to the brightness of panes
+_DUST = 0.02  # Deviation of what dust adds to the brightness of panes
 
 _LONG = 4.6  # Length of the body that is painted [m]
 
@@ -299,8 +299,8 @@ def panes() -> Texture:
     for x in (0.3, 0.6, 0.9):
         rear.box((x - 0.11, 0.2), (x + 0.11, 0.36), 0.12, round_=0.05)
     side = sheet_of(tones, SIDE_PANE, (0.95, 0.4))
-    side.box((0.28, -0.1), (0.56, 0.2), 0.3, round_=0.08)
-    side.box((0.34, 0.2), (0.5, 0.31), 0.34, round_=0.05)
+    side.box((0.28, -0.1), (0.56, 0.2), 0.22, round_=0.08)
+    side.box((0.34, 0.2), (0.5, 0.31), 0.26, round_=0.05)
     for sheet, size, width in (
         (screen, (1.3, 0.75), 0.05), (rear, (1.2, 0.6), 0.07), (side, (0.95, 0.4), 0.035),
     ):  # fmt: skip

@@ -39,13 +39,7 @@ _TAN, _YELLOW = material("crops_tan"), material("crops_yellow")
 
 # order: bytes of plans depend on it, whose fields hold an index of it
 CROPS = (
-    Crop(
-        "green",
-        material("crops_green", (0.9, 0.92, 0.86)),
-        material("snow", (0.97, 0.97, 0.98)),
-        0.22,
-        19 / 68,
-    ),
+    Crop("green", material("crops_green"), material("snow", (0.97, 0.97, 0.98)), 0.22, 19 / 68),
     Crop("yellow", _YELLOW, _TAN, 0.42, 18 / 68),
     Crop("tan", _TAN, _TAN, 0.05, 18 / 68),
     Crop("lilac", material("crops_lilac"), material("crops_tan", (0.72, 0.82, 1.0)), 0.30, 13 / 68),

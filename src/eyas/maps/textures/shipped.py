@@ -17,7 +17,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.zip")
 
-SHA256 = "d48f2a51db3337cd622dacb0efe7884ff790b792a9adfe041e70c53ae4c124c2"
+SHA256 = "fa3b9edc881dff8da15dcac83a9732d19a8d7f016f0d3773b560024c8a0b4003"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 
