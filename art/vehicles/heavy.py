@@ -1,4 +1,4 @@
-"""Trucks: a cab on a bare chassis, and the frame of a trailer."""
+"""Trucks: a cab, a chassis with a box or for a trailer, and the frame of a trailer."""
 
 from functools import partial
 from itertools import pairwise
