@@ -25,11 +25,12 @@ def sand() -> Texture:
     ripple = exact.sin(phase + 0.5 * exact.sin(phase))
     strength = np.clip(0.6 + 0.3 * fractal(rng, 1.6, longest=90.0), 0.1, 1.0)
     grain = 0.055 * white(rng) + 0.04 * fractal(rng, 0.8, longest=60.0)
-    picture = painted((214.0, 190.0, 148.0), 0.08 * ripple * strength + grain)
+    picture = painted((214.0, 190.0, 148.0), 0.11 * ripple * strength + grain)
     # Iron makes it redder here than there; dark gravel gathers in places.
-    picture += fractal(rng, 1.0, longest=60.0)[..., None] * np.array([6.0, -2.0, -11.0])
-    pebble = rng.random(grain.shape) + 0.012 * fractal(rng, 0.9, longest=50.0)
-    made = opaque(mixed(picture, (112.0, 94.0, 76.0), 0.8 * (pebble > 0.992)))
+    iron = fractal(source("sand iron"), 1.0, longest=60.0)
+    picture += iron[..., None] * np.array([6.0, -2.0, -11.0])
+    pebble = rng.random(grain.shape) + 0.01 * iron
+    made = opaque(mixed(picture, (112.0, 94.0, 76.0), 0.6 * (pebble > 0.995)))
     cloud = 0.5 + 0.21 * fractal(rng, 0.85, longest=70.0)
     made[..., 3] = np.round(255.0 * np.clip(cloud, 0.0, 1.0))
     return made

@@ -17,7 +17,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.zip")
 
-SHA256 = "fa3b9edc881dff8da15dcac83a9732d19a8d7f016f0d3773b560024c8a0b4003"
+SHA256 = "c82a760417226e01bfba7296bf4f52b0fbdfe4e798f85896c09e0e28ecf3ec32"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 

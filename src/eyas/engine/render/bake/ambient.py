@@ -112,7 +112,7 @@ def _wear(
     noise = noise[: crowns.shape[0], : crowns.shape[1]]
     # Hollows, where it is damp or dark gravel lies, are fewer and darker than what is dry.
     noise -= 1.3 * np.maximum(-0.7 - noise, 0.0)
-    most = 40.0 if any(one.surface == Surface.DESERT for one in mesh.palette) else 44.0
+    most = 38.0 if any(one.surface == Surface.DESERT for one in mesh.palette) else 44.0
     light = most * (1.0 - 0.62 * np.maximum(road, solid > 0)) * noise
     light += 14.0 * verge * (1.0 + 0.6 * noise) - 16.0 * (crowns > 0)
     light[0, 0] = 0.0  # stands for all that lies beyond the map
