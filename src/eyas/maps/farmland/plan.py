@@ -28,7 +28,7 @@ from eyas.maps.plan.plan import (
 MOUNTAINS = Horizon("farmland", height=0.075, ridges=1.0, woods=0.25)
 """What stands beyond the fields."""
 
-_MARGIN, _CORNERS = 1.3, 8.0
+_MARGIN, _CORNERS = 1.3, 13.0
 """Most by which a field's edge wanders, and the distance between its corners [m]."""
 _VERGE = 1.2  # Width of the gravel and grass beside roads [m]
 _DITCH = 0.5  # Width of the ditches around fields [m]
