@@ -40,6 +40,9 @@ Figures = dict[str, float]
 LOOKS = {"street": (12.0, 0.35), "far": (45.0, 0.18), "high": (80.0, 0.95), "near": (13.0, 0.8)}
 """Height above a vehicle [m] and pitch down [rad] of the camera of each picture that is measured,
 straight behind the vehicle."""
+PITCHES = {"down": math.pi / 2 - 0.02, "steep": math.pi / 2 - 0.38, "oblique": 0.35}
+"""Pitch down [rad] of the views for detectors. Photographs that were taken straight down show their
+marked cars 15 to 34 degrees beside the nadir: `steep` compares with them."""
 WIDTH, SIZE = 640, (480, 640)
 LUMA = np.array((0.299, 0.587, 0.114))
 WINDOW = 24  # Side of a patch of ground [pixels]
@@ -249,8 +252,8 @@ def judged(asked: argparse.Namespace) -> dict[str, Figures]:
     for longest in (90, 45):
         if asked.real and (asked.real / "cars.json").is_file():
             marked = marked_cars(asked.real, longest)
-            for name in ("down", "oblique"):
-                chosen = [view for view in marked if (view.name == "down") == (name == "down")]
+            for name in ("steep", "oblique"):
+                chosen = [view for view in marked if (view.name == "down") == (name == "steep")]
                 kinds[f"photographs {name}, {longest} px"] = chosen
     for weather in asked.weathers:
         for height in asked.heights:
@@ -260,7 +263,7 @@ def judged(asked: argparse.Namespace) -> dict[str, Figures]:
                 for view in judge.views_of(name, height, asked.views, asked.seed, "", weather)
             ]
         for longest in (90, 45):
-            for name, pitch in (("down", math.pi / 2 - 0.02), ("oblique", 0.35)):
+            for name, pitch in PITCHES.items():
                 kinds[f"{weather} {name}, {longest} px"] = [
                     view
                     for place in asked.maps

@@ -99,6 +99,9 @@ def _body(frame: Frame, shape: CarShape, detail: _Detail, stations: NDArray[np.f
     if 3 not in detail.points:
         _lamp_panels(shell, shape, every[1], every[0])
         _lamp_panels(shell, shape, every[-2], every[-1])
+    for material, x, (right, left), (low, high) in shape.fittings if 3 in detail.points else ():
+        corners = [(x, left, low), (x, right, low), (x, right, high), (x, left, high)]
+        shell.quads(corners, material, both_sides=True)
     if detail.arches:
         add_trimmings(shell, frame, shape)
         add_bumpers(shell, frame, shape, wrap, paint)
@@ -231,7 +234,7 @@ def _end_skin(shape: CarShape, strip: tuple[int, ...], across: float, *, front: 
         return HEAD_LAMP if front else TAIL_LAMP
     if low == 4 and shape.tall_tail_lamps and outer and not front:
         return TAIL_LAMP
-    return PANE if low == 4 and window else PAINT
+    return PANE if low == 4 and window and (front or not outer) else PAINT
 
 
 def _lamp_panels(

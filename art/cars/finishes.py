@@ -46,6 +46,6 @@ STEEL = plain(0.34, 0.35, 0.37)  # Frames and tanks below the body
 BRIGHT = plain(0.74, 0.75, 0.76)  # Polished metal
 PLATE = plain(0.88, 0.88, 0.84)  # Number plates
 SKIN_WHITE = plain(0.86, 0.87, 0.86)  # White panels of trailers and helmets
-CLOTH = plain(0.16, 0.18, 0.25)  # A rider's suit
+CLOTH = plain(0.24, 0.25, 0.29)  # A rider's suit
 FREIGHT = Material(texture="freight", tint=(0.94, 0.95, 0.94))
 """White panels of boxes on wheels, with seams, doors and bars."""

@@ -45,6 +45,8 @@ class CarShape:
     dark_bumpers: bool = False  # Whether the bumpers are not painted
     rack: bool = False  # Whether it has rails on the roof
     bed: Range | None = None  # Extent in x of an open bed behind the cab, under a dark cover
+    fittings: tuple[tuple[Material, float, Range, Range], ...] = ()
+    """Upright rectangles behind it, on both sides: material, x, and ranges of y and z [m]."""
     pods: tuple[tuple[float, float, float], ...] = ()
     """Boxes on the roof: rear and front end (x) and top (z) [m]."""
 

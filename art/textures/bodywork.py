@@ -41,7 +41,7 @@ _SOFT = 0.5
 above a car has soft lines and no ink."""
 
 _FILM = 0.06  # Deviation of the brightness of paint, as a share
-_DUST = 0.012  # Deviation of what dust adds to the brightness of panes
+_DUST = 0.02  # Deviation of what dust adds to the brightness of panes
 
 _LONG = 4.6  # Length of the body that is painted [m]
 
@@ -241,11 +241,10 @@ def _rear(sheet: Sheet, kind: str) -> None:
     sheet.box((0.42, 0.04), (0.6, 0.1), 0.5)  # an exhaust
     sheet.line([(0.53, 0.44), (0.53, 0.75)], 0.03, _SEAM)
     if kind == "bus":  # the engine's grille, and lamps in a column
-        sheet.box((-0.1, 0.2), (0.52, 0.6), _BLACK)
-        for y in np.linspace(0.24, 0.56, 6):
-            sheet.line([(0.0, float(y)), (0.5, float(y))], 0.022, 0.45 * BASE)
-        for y in (0.3, 0.42, 0.54):
-            sheet.box((0.66, y - 0.05), (0.8, y + 0.05), 0.9)
+        sheet.box((-0.1, 0.17), (0.46, 0.4), _BLACK)
+        for y in np.linspace(0.2, 0.37, 5):
+            sheet.line([(0.0, float(y)), (0.44, float(y))], 0.016, 0.45 * BASE)
+        sheet.line([(0.58, 0.14), (0.58, 0.75)], 0.02, _SEAM, 0.8)
     elif kind == "van":
         sheet.line([(0.0, 0.1), (0.0, 0.75)], 0.04, _SEAM)
     else:
@@ -287,10 +286,10 @@ def panes() -> Texture:
     """
     tones = np.full((SIZE, SIZE), _GLASS)
     screen = sheet_of(tones, WINDSCREEN, (1.3, 0.75))
-    screen.box((-0.1, -0.1), (1.4, 0.2), 0.16)  # dashboard
+    screen.box((-0.1, -0.1), (1.4, 0.22), 0.22)  # dashboard
     for x in (0.37, 0.93):
-        screen.box((x - 0.2, 0.27), (x + 0.2, 0.56), 0.11, round_=0.08)  # seats
-        screen.box((x - 0.11, 0.58), (x + 0.11, 0.68), 0.13, round_=0.05)
+        screen.box((x - 0.2, 0.27), (x + 0.2, 0.56), 0.26, round_=0.08)  # seats
+        screen.box((x - 0.11, 0.58), (x + 0.11, 0.68), 0.3, round_=0.05)
     screen.line([(0.8, 0.2), (0.84, 0.3), (1.02, 0.3), (1.06, 0.2)], 0.035, 0.01)  # wheel
     screen.box((0.59, 0.62), (0.71, 0.68), 0.01)  # mirror
     for x in (0.25, 0.75):  # wipers
@@ -298,10 +297,10 @@ def panes() -> Texture:
     rear = sheet_of(tones, REAR_WINDOW, (1.2, 0.6))
     rear.box((-0.1, -0.1), (1.3, 0.16), 0.08)  # shelf
     for x in (0.3, 0.6, 0.9):
-        rear.box((x - 0.11, 0.2), (x + 0.11, 0.36), 0.09, round_=0.05)
+        rear.box((x - 0.11, 0.2), (x + 0.11, 0.36), 0.12, round_=0.05)
     side = sheet_of(tones, SIDE_PANE, (0.95, 0.4))
-    side.box((0.28, -0.1), (0.56, 0.2), 0.13, round_=0.08)
-    side.box((0.34, 0.2), (0.5, 0.31), 0.15, round_=0.05)
+    side.box((0.28, -0.1), (0.56, 0.2), 0.22, round_=0.08)
+    side.box((0.34, 0.2), (0.5, 0.31), 0.26, round_=0.05)
     for sheet, size, width in (
         (screen, (1.3, 0.75), 0.05), (rear, (1.2, 0.6), 0.07), (side, (0.95, 0.4), 0.035),
     ):  # fmt: skip

@@ -80,13 +80,13 @@ def _grass(rng: np.random.Generator, dryness: float) -> Picture:
     tufts = fractal(rng, 0.9, longest=28.0)
     cloud = fractal(rng, 1.2, longest=70.0)
     clumps = fractal(rng, 0.5, longest=30.0)
-    light = 0.16 * blades + 0.13 * tufts + 0.13 * clumps + 0.03 * cloud
+    light = 0.16 * blades + 0.19 * tufts + 0.19 * clumps + 0.05 * cloud
     picture = painted((143.0, 178.0, 88.0), np.clip(light, -0.75, 0.75))
     dry = np.clip(0.6 * fractal(rng, 0.9, longest=34.0) - 0.3, 0, 1)
     picture = mixed(picture, painted((196.0, 186.0, 112.0), 0.1 * blades), dryness * dry)
     # Shade between tufts.
     deep = np.clip(0.7 * tufts + 0.5 * clumps - 0.6 + 0.35 * white(rng), 0, 1)
-    picture = mixed(picture, painted((62.0, 92.0, 38.0), 0.12 * blades), 0.7 * deep)
+    picture = mixed(picture, painted((52.0, 80.0, 32.0), 0.12 * blades), 0.85 * deep)
     flower = rng.random(blades.shape)
     return mixed(picture, (226.0, 222.0, 150.0), 0.5 * (flower > 0.997))
 

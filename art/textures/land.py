@@ -25,9 +25,12 @@ def sand() -> Texture:
     ripple = exact.sin(phase + 0.5 * exact.sin(phase))
     strength = np.clip(0.6 + 0.3 * fractal(rng, 1.6, longest=90.0), 0.1, 1.0)
     grain = 0.055 * white(rng) + 0.04 * fractal(rng, 0.8, longest=60.0)
-    picture = painted((214.0, 190.0, 148.0), 0.08 * ripple * strength + grain)
-    pebble = rng.random(grain.shape)
-    made = opaque(mixed(picture, (150.0, 130.0, 104.0), 0.7 * (pebble > 0.994)))
+    picture = painted((214.0, 190.0, 148.0), 0.11 * ripple * strength + grain)
+    # Iron makes it redder here than there; dark gravel gathers in places.
+    iron = fractal(source("sand iron"), 1.0, longest=60.0)
+    picture += iron[..., None] * np.array([6.0, -2.0, -11.0])
+    pebble = rng.random(grain.shape) + 0.01 * iron
+    made = opaque(mixed(picture, (112.0, 94.0, 76.0), 0.6 * (pebble > 0.995)))
     cloud = 0.5 + 0.21 * fractal(rng, 0.85, longest=70.0)
     made[..., 3] = np.round(255.0 * np.clip(cloud, 0.0, 1.0))
     return made
@@ -73,8 +76,12 @@ def _rows(
     across = np.abs((16 * y + wander) % 1.0 - 0.5) * 2  # 0 in the middle of a row
     tuft = fractal(rng, 0.5, longest=14.0)
     cover = np.clip((width + 0.16 * tuft - across) * 4.0 + 0.5, 0, 1)
-    earth = painted((122.0, 98.0, 70.0), 0.1 * fractal(rng, 0.6, longest=20.0))
-    growth = 0.07 * fractal(rng, 1.1, longest=90.0)
+    # Plants shade the earth between them, the denser the more.
+    shade = 1.0 - 0.65 * width
+    earth = painted(
+        (122.0 * shade, 98.0 * shade, 70.0 * shade), 0.1 * fractal(rng, 0.6, longest=20.0)
+    )
+    growth = 0.14 * fractal(rng, 0.9, longest=70.0)
     plants = painted(leaf, np.clip(0.2 * tuft + 0.08 * white(rng) + growth, -0.7, 0.7))
     plants = mixed(plants, deep, np.clip(0.5 * across + 0.2 * fractal(rng, 0.4, longest=9.0), 0, 1))
     return opaque(mixed(earth, plants, cover))

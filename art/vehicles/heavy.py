@@ -1,4 +1,4 @@
-"""Trucks: a cab on a bare chassis, and the frame of a trailer."""
+"""Trucks: a cab, a chassis with a box or for a trailer, and the frame of a trailer."""
 
 from functools import partial
 from itertools import pairwise
@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from art.cars.finishes import (
     BRIGHT,
+    FREIGHT,
     HEAD_LAMP,
     INDICATOR_LEFT,
     INDICATOR_RIGHT,
@@ -19,11 +20,22 @@ from art.cars.finishes import (
     TRIM,
 )
 from art.cars.frame import Axle
-from art.cars.regions import CAB_SIDE, PLAIN, REAR_WINDOW, SIDE_PANE, WINDSCREEN, body_paint
+from art.cars.regions import (
+    BOX_DOORS,
+    BOX_ROOF,
+    BOX_SIDE,
+    CAB_SIDE,
+    PLAIN,
+    REAR_WINDOW,
+    SIDE_PANE,
+    WINDSCREEN,
+    body_paint,
+)
 from art.parts import levels_of
 from art.vehicles.vehicle import CAB, CHASSIS_BEHIND, Trailer, VehicleModel, vehicle
 from eyas.engine.mesh.panels import fan
 from eyas.engine.mesh.shell import Shell
+from eyas.engine.state.mesh import Material
 from eyas.engine.traffic.config import VehicleType
 from eyas.engine.traffic.trailer import BUMPER_AHEAD, REAR_AXLE, TAIL_BEHIND
 from eyas.lanes import exact
@@ -66,6 +78,36 @@ def truck(
 def _truck(model: VehicleModel, shell: Shell, detail: int) -> None:
     _cab(shell, model.length / 2, detail)
     _chassis(shell, model, detail)
+    if not model.articulated:
+        ends = 0.02 - model.length / 2, model.length / 2 - CAB - 0.28
+        freight_box(shell, ends, (1.16, 4.0), PAINT, detail)
+
+
+def freight_box(
+    shell: Shell,
+    ends: tuple[float, float],  # x of its rear and its front [m]
+    heights: tuple[float, float],  # z of its floor and its roof [m]
+    stripe: Material,  # Along its sides
+    detail: int,
+) -> None:
+    """Add a box with doors behind, and the lamps at their corners."""
+    (end, front), (floor, roof) = ends, heights
+    rows = ((floor, 1.7, FREIGHT), (1.7, 2.2, stripe), (2.2, roof, FREIGHT))
+    for low, high, material in rows:
+        side = [(front, HALF, low), (end, HALF, low), (end, HALF, high), (front, HALF, high)]
+        up = (np.array([low, low, high, high]) - floor) / (roof - floor)
+        shell.quads(side, material, uvs=BOX_SIDE.at([1.0, 0.0, 0.0, 1.0], up), both_sides=True)
+    lid = [(end, 0.0, roof), (front, 0.0, roof), (front, HALF, roof), (end, HALF, roof)]
+    over = BOX_ROOF.at([0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0])
+    shell.quads(lid, FREIGHT, uvs=over, both_sides=True)
+    doors = facing(end, (-HALF, HALF), (floor, roof))
+    shell.quads(doors[::-1], FREIGHT, uvs=BOX_DOORS.at([0.0, 1.0, 1.0, 0.0], [1.0, 1.0, 0.0, 0.0]))
+    shell.quads(facing(front, (-HALF, HALF), (floor, roof)), FREIGHT, uvs=PLAIN)
+    below = [(end, HALF, floor), (front, HALF, floor), (front, -HALF, floor), (end, -HALF, floor)]
+    shell.quads(below, TRIM)
+    if detail:
+        marker = facing(end - 0.012, (0.86, 1.16), (roof - 0.13, roof - 0.05))[::-1]
+        shell.quads(marker, TAIL_LAMP, both_sides=True)
 
 
 def _slice(back: float, front: float, half: float, z: float) -> NDArray[np.float64]:

@@ -4,11 +4,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from art.cars.finishes import CLOTH, GLASS, HEAD_LAMP, PAINT, SKIN_WHITE, TAIL_LAMP, TRIM, plain
+from art.cars.finishes import CLOTH, GLASS, HEAD_LAMP, SKIN_WHITE, TAIL_LAMP, TRIM, plain
 from art.cars.frame import Axle
 from art.parts import levels_of
 from art.vehicles.vehicle import VehicleModel, vehicle
 from eyas.engine.mesh.shell import Shell
+from eyas.engine.state.mesh import Material
 from eyas.engine.traffic.config import VehicleType
 
 LEAN_LIMIT = 0.2
@@ -32,6 +33,7 @@ class Posture:
     knee: Point
     foot: Point
     head_radius: float
+    helmet: Material = SKIN_WHITE
 
 
 def two_wheeler(
@@ -69,9 +71,11 @@ def _rider(shell: Shell, posture: Posture, detail: int) -> None:
     sides, rows = ((4, 3), (5, 4), (7, 6))[detail]
     hip, chest, head = posture.hip, posture.chest, posture.head
     neck = tuple(0.55 * h + 0.45 * c for h, c in zip(head, chest, strict=True))
-    shell.tube([hip, chest, neck], (0.15, 0.18, 0.08), CLOTH, sides=sides + 1)
+    shell.tube([hip, chest, neck], (0.16, 0.17, 0.08), CLOTH, sides=sides + 1)
+    across = (chest[0] + 0.01, 0.0, chest[2] + 0.04)
+    shell.ball(across, (0.14, 0.25, 0.1), CLOTH, rows=rows, sides=sides + 2)
     size = posture.head_radius
-    shell.ball(head, (size, 0.85 * size, size), SKIN_WHITE, rows=rows, sides=sides + 1)
+    shell.ball(head, (size, 0.85 * size, size), posture.helmet, rows=rows, sides=sides + 1)
     visor = (head[0] + 0.42 * size, 0.0, head[2] + 0.05 * size)
     if detail:
         shell.ball(visor, (0.68 * size, 0.66 * size, 0.42 * size), GLASS, rows=3, sides=sides)
@@ -79,10 +83,10 @@ def _rider(shell: Shell, posture: Posture, detail: int) -> None:
     arm = [shoulder, posture.elbow, posture.hand]
     leg = [(hip[0] + 0.02, 0.1, hip[2] - 0.03), posture.knee, posture.foot]
     if detail == 0:
-        shell.tube(arm[::2], (0.08, 0.05), PAINT, sides=3, both_sides=True)
+        shell.tube(arm[::2], (0.08, 0.05), CLOTH, sides=3, both_sides=True)
         shell.tube(leg[1:], (0.1, 0.07), _TROUSERS, sides=3, both_sides=True)
         return
-    shell.tube(arm, (0.08, 0.065, 0.045), PAINT, sides=sides - 1, both_sides=True)
+    shell.tube(arm, (0.08, 0.07, 0.05), CLOTH, sides=sides - 1, both_sides=True)
     shell.tube(leg, (0.105, 0.085, 0.06), _TROUSERS, sides=sides - 1, both_sides=True)
     if detail == 2:
         x, y, z = posture.foot

@@ -1,6 +1,6 @@
 """A city bus."""
 
-from art.cars.finishes import TRIM
+from art.cars.finishes import TAIL_LAMP, TRIM, plain
 from art.cars.frame import Axle
 from art.cars.shape import CarShape
 from art.vehicles.car import car
@@ -22,7 +22,13 @@ _SHAPE = CarShape(
     tail_lamps=0.06,
     head_lamps=0.09,
     sill=TRIM,
-    pods=((-3.6, -1.2, 3.36), (1.4, 3.0, 3.30)),
+    fittings=(
+        (TAIL_LAMP, -4.88, (0.88, 1.2), (0.87, 1.28)),
+        (TAIL_LAMP, -4.88, (0.84, 1.06), (2.64, 2.76)),
+        (plain(0.05, 0.05, 0.05), -4.88, (0.0, 0.52), (2.46, 2.74)),  # the route
+        (plain(0.85, 0.52, 0.10), -4.893, (0.1, 0.32), (2.52, 2.68)),
+    ),
+    pods=((-4.2, -2.6, 3.36), (1.4, 3.0, 3.30)),
     bodywork="bus",
 )  # fmt: skip
 

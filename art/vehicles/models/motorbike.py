@@ -23,6 +23,7 @@ _POSTURE = Posture(
     knee=(0.08, 0.24, 0.74),
     foot=(-0.30, 0.22, 0.34),
     head_radius=0.145,
+    helmet=PAINT,
 )
 
 

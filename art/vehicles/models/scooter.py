@@ -21,14 +21,16 @@ def _scooter(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
     shield = [(0.34, 0.34), (0.46, 0.32), (0.60, 0.62), (0.44, 1.0), (0.33, 0.96)]
     shell.prism(shield, (-0.2, 0.2), PAINT)
     shell.box((-0.25, -0.17, 0.22), (0.44, 0.17, 0.31), TRIM)
-    body = [(-0.92, 0.52), (-0.66, 0.36), (-0.2, 0.26), (-0.12, 0.66), (-0.88, 0.72)]
-    shell.prism(body, (-0.2, 0.2), PAINT)
-    seat = [(-0.9, 0.72), (-0.12, 0.66), (-0.08, 0.76), (-0.6, 0.78), (-0.9, 0.82)]
-    shell.prism(seat, (-0.15, 0.15), SEAT)
+    body = [(-0.7, 0.46), (-0.6, 0.36), (-0.2, 0.26), (-0.12, 0.66), (-0.7, 0.7)]
+    shell.prism(body, (-0.19, 0.19), PAINT)
+    tail = [(-0.88, 0.6), (-0.68, 0.46), (-0.68, 0.7), (-0.86, 0.74)]
+    shell.prism(tail, (-0.13, 0.13), PAINT)
+    seat = [(-0.84, 0.73), (-0.12, 0.66), (-0.08, 0.76), (-0.6, 0.78), (-0.82, 0.82)]
+    shell.prism(seat, (-0.14, 0.14), SEAT)
     fender = [(0.5, 0.38), (0.975, 0.36), (0.9, 0.48), (0.7, 0.54)]
     shell.prism(fender, (-0.085, 0.085), PAINT)
     lamp(shell, (0.54, 0.0, 0.86), (0.1, 0.2, 0.14), front=True)
-    lamp(shell, (-0.925, 0.0, 0.64), (0.05, 0.26, 0.1), front=False)
+    lamp(shell, (-0.88, 0.0, 0.66), (0.05, 0.22, 0.08), front=False)
     if detail == 0:
         return
     shell.tube(
@@ -46,8 +48,9 @@ def _scooter(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
     if detail == 2:
         exhaust = [(-0.3, -0.17, 0.22), (-0.62, -0.18, 0.25), (-0.9, -0.18, 0.32)]
         shell.tube(exhaust, (0.03, 0.06, 0.055), BRIGHT)
-        shell.box((-0.975, -0.09, 0.36), (-0.94, 0.09, 0.48), PLATE)
-        shell.box((-0.97, -0.17, 0.83), (-0.6, 0.17, 0.86), STEEL)
+        shell.box((-0.965, -0.09, 0.46), (-0.93, 0.09, 0.6), PLATE)
+        rail = [(-0.6, 0.15, 0.8), (-0.88, 0.12, 0.85), (-0.88, -0.12, 0.85), (-0.6, -0.15, 0.8)]
+        shell.tube(rail, (0.014,) * 4, STEEL, sides=3)
 
 
 MODEL = two_wheeler(

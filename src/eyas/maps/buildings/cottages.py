@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eyas.engine.mesh.assembly import concatenate
 from eyas.engine.mesh.flat import flat_polygon, quads, walls
 from eyas.engine.mesh.solids import box
-from eyas.engine.state.mesh import Material, Mesh
+from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.engine.world.build.materials import TEXTURES, material
 from eyas.engine.world.build.scene_builder import Levels
 from eyas.lanes import exact
@@ -47,6 +47,13 @@ _DOOR = material("plain", (0.36, 0.22, 0.14))
 _FRAME = material("plain", (0.93, 0.93, 0.91))
 _CHIMNEY = material("brick", (0.95, 0.9, 0.86))
 _DARK = material("plain", (0.12, 0.11, 0.10))
+_PANE = Material(tint=(0.10, 0.13, 0.20), surface=Surface.GLASS)
+_ON_ROOF = (
+    *((x, 5.2, 1.3, 1.5, over) for x in (-4.6, -1.2, 2.4) for over in (0.05, 0.08)),
+    *((1.75 * k - 2.6, -6.0, 1.65, 3.6, 0.1) for k in range(4)),
+)
+"""Windows with their frames on the front slope, solar panels on the back: middle, width, length
+and height above the tiles [m]."""
 
 
 def outline_at(place: Points, turn: float) -> Points:
@@ -101,6 +108,16 @@ def _details(top: float, storeys: int) -> list[Mesh]:
         box((1.5, 1.5, 0.2), (5.2, -3.4, top + 3.65), _FRAME, 1.0),
         box((0.7, 0.7, 0.06), (5.2, -3.4, top + 3.78), _DARK, 1.0),
     ]
+    for x, y, wide, long, over in _ON_ROOF[6 * (storeys % 2) :]:
+        frame, way = 0.12 * (over < 0.06), float(np.sign(y))
+        right, ends = way * (0.5 * wide + frame), y + way * np.array([1.0, -1.0]) * (0.5 * long)
+        (low, high), rise = ends + way * np.array([frame, -frame]), top + over + ROOF
+        slope = ROOF / (front + _EAVES)
+        corners = [
+            (x + side, at, rise - slope * abs(at))
+            for side, at in ((right, low), (-right, low), (-right, high), (right, high))
+        ]
+        made.append(quads([corners], [np.zeros((4, 2))], _FRAME if frame else _PANE))
     for storey in range(1, storeys):
         floor = storey * FLOOR
         made += [

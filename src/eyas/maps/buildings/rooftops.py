@@ -8,18 +8,18 @@ from numpy.typing import NDArray
 
 from eyas.engine.mesh.assembly import concatenate, transformed
 from eyas.engine.mesh.solids import box, cylinder, tube
-from eyas.engine.state.mesh import Material, Mesh
+from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.world.build.materials import material
 from eyas.engine.world.build.scene_builder import Levels, SceneBuilder
 from eyas.lanes import exact
 
 _ROOM = {"stairs": 3.6, "plant": 5.2, "cooler": 1.8, "coolers": 3.4, "duct": 4.6,
-         "skylights": 3.4, "tank": 2.0, "vents": 1.6, "mast": 1.2}  # fmt: skip
+         "skylights": 3.4, "tank": 2.0, "vents": 1.6, "panels": 3.3, "mast": 1.2}  # fmt: skip
 """Radius of the free circle that each unit needs [m]."""
-_SMALL = ("cooler", "vents", "skylights", "cooler", "vents")
-_LARGE = ("coolers", "duct", "skylights", "cooler", "vents", "tank", "coolers", "duct")
-_AREA_EACH = 130.0  # Roof area for each unit [m^2]
+_SMALL = ("cooler", "vents", "skylights", "panels", "vents")
+_LARGE = ("coolers", "duct", "skylights", "cooler", "vents", "tank", "panels", "duct")
+_AREA_EACH = 120.0  # Roof area for each unit [m^2]
 _MOST = 16
 _HIGH = 45.0  # Roofs above this height have a mast [m]
 _FROM_PARAPET = 1.3
@@ -29,6 +29,7 @@ _SHEET = material("concrete", (0.84, 0.88, 0.92))
 _DARK = material("plain", (0.26, 0.27, 0.28))
 _ZINC = material("plain", (0.62, 0.64, 0.66))
 _GLASS = material("plain", (0.44, 0.54, 0.60))
+_SOLAR = Material(tint=(0.10, 0.13, 0.20), surface=Surface.GLASS)
 
 Outline = NDArray[np.float64]
 
@@ -160,6 +161,15 @@ def _tank(sides: int) -> Mesh:
     return concatenate([drum, *(legs if sides > 5 else [])])
 
 
+def _panels() -> Mesh:
+    """Return three rows of solar panels, which lean against one side."""
+    rows = [box((4.6, 1.1, 0.08), (0.0, 0.0, 0.35), _SOLAR, 1.0) for _ in range(3)]
+    for row, y in zip(rows, (-1.5, 0.0, 1.5), strict=True):
+        row.positions[:, 2] += 0.4 * row.positions[:, 1]
+        row.positions[:, 1] += y
+    return concatenate(rows)
+
+
 def _vents(sides: int) -> Mesh:
     """Return a few pipes with caps."""
     spots = ((-0.8, -0.3, 0.9), (0.0, 0.5, 0.7), (0.7, -0.2, 1.1))
@@ -188,6 +198,7 @@ UNITS: dict[str, Callable[[], Levels]] = {
     "duct": lambda: (_duct(), _far_duct()),
     "skylights": lambda: (_skylights(), _block(4.6, 3.0, 0.5, _GLASS)),
     "tank": lambda: (_tank(10), _tank(5)),
+    "panels": lambda: (_panels(), _block(4.6, 4.0, 0.4, _SOLAR)),
     "vents": lambda: (_vents(6), _vents(3)),
     "mast": lambda: (_mast(5), _mast(3)),
 }

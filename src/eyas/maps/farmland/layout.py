@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from eyas.engine.state.mesh import Material
-from eyas.engine.world.build.materials import material, without_snow
+from eyas.engine.world.build.materials import material
 from eyas.engine.world.weather import Season
 from eyas.maps.farmland.roads import ROAD_WIDTH
 
@@ -40,16 +40,9 @@ _TAN, _YELLOW = material("crops_tan"), material("crops_yellow")
 # order: bytes of plans depend on it, whose fields hold an index of it
 CROPS = (
     Crop("green", material("crops_green"), material("snow", (0.97, 0.97, 0.98)), 0.22, 19 / 68),
-    # As in the original, snow greys the lilac fields, and leaves yellow and tan ones as they are.
-    Crop("yellow", _YELLOW, without_snow(_YELLOW), 0.42, 18 / 68),
-    Crop("tan", _TAN, without_snow(_TAN), 0.05, 18 / 68),
-    Crop(
-        "lilac",
-        material("crops_lilac"),
-        without_snow(material("crops_tan", (0.72, 0.82, 1.0))),
-        0.30,
-        13 / 68,
-    ),
+    Crop("yellow", _YELLOW, _TAN, 0.42, 18 / 68),
+    Crop("tan", _TAN, _TAN, 0.05, 18 / 68),
+    Crop("lilac", material("crops_lilac"), material("crops_tan", (0.72, 0.82, 1.0)), 0.30, 13 / 68),
 )
 """The four crops; taller ones stand out a little from the soil."""
 

@@ -9,7 +9,7 @@ from eyas.engine.world.build.millimetres import snapped
 from eyas.engine.world.roads.areas import road_area
 from eyas.maps.farmland.layout import CROPS, FLOOR, VERGE, lay_out
 from eyas.maps.farmland.roads import NAME, road_graph
-from eyas.maps.farmland.scenery import BALK, SHOULDER, bales, far_fields, field, lamps_of
+from eyas.maps.farmland.scenery import BALK, DITCH, SHOULDER, bales, far_fields, field, lamps_of
 from eyas.maps.land.ground import rectangle
 from eyas.maps.land.outlines import wavy
 from eyas.maps.plan.library import STREET_KINDS
@@ -28,9 +28,10 @@ from eyas.maps.plan.plan import (
 MOUNTAINS = Horizon("farmland", height=0.075, ridges=1.0, woods=0.25)
 """What stands beyond the fields."""
 
-_MARGIN, _CORNERS = 0.9, 10.0
+_MARGIN, _CORNERS = 1.3, 13.0
 """Most by which a field's edge wanders, and the distance between its corners [m]."""
 _VERGE = 1.2  # Width of the gravel and grass beside roads [m]
+_DITCH = 0.5  # Width of the ditches around fields [m]
 _LIGHT = LampLight(axis=(0.7, 0.0, -1.0), intensity=45.0, cut_off=1.57)
 """The beams lean over the road, as in the original."""
 
@@ -52,7 +53,12 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     harvested = [
         area for lot, area in zip(lots, areas, strict=True) if CROPS[lot.crop].name == "tan"
     ]
-    covered = shapely.union(roads, shapely.union_all(areas))
+    ditches = [
+        snapped(shapely.buffer(area, _DITCH, join_style="mitre").difference(verge))
+        for area in areas
+    ]
+    covered = shapely.union_all([roads, *areas, *ditches])
+    ditches = snapped(shapely.union_all(ditches).difference(shapely.union_all(areas)))
     between = shapely.difference(rectangle(*FLOOR), covered)
     verge = shapely.buffer(roads, _VERGE, quad_segs=4)
     return MapPlan(
@@ -67,6 +73,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
                 pieces=(
                     Flat(area=shapely.difference(between, verge), cover=BALK),
                     Flat(area=shapely.intersection(between, verge), cover=SHOULDER, beside=roads),
+                    Flat(area=ditches, cover=DITCH),
                     far_fields(),
                 )
             ),

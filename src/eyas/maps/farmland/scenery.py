@@ -20,6 +20,7 @@ from eyas.maps.plants.gardens import scattered
 SOIL = material("soil", (1.0, 0.96, 0.90))
 _MEADOW = material("lawn", (0.96, 0.92, 0.88))
 BALK = _MEADOW  # The ground between fields
+DITCH = material("soil", (0.30, 0.32, 0.26))  # Wet earth and weeds around fields
 SHOULDER = replace(_MEADOW, surface=Surface.HILLSIDE_VERGE)
 _LAMPS_APART = 64.0
 """Along a road, from the first lamp of a link to the second, across the road [m]."""

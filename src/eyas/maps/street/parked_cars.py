@@ -13,7 +13,7 @@ from eyas.engine.world.build.scene_builder import Levels
 
 FILE = Path(__file__).with_name("parked_cars.eya")
 
-SHA256 = "b6ff7b9f9296b7b2e611b13a107c035c69e057576623ecbaf65fcd27bd8d9247"
+SHA256 = "ac39b5bd0d724b5f6b94a6d7fd4dee8ea3f4a78bd6c63c44fc0d63e1abef1476"
 """Of its index, which has the digest of its arrays: it stands for them in the keys of scenes."""
 
 VARIANTS = 32  # Number of kinds of cars; each is as frequent as another

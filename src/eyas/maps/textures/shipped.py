@@ -17,7 +17,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.zip")
 
-SHA256 = "f14dd7bc92511c47b9b5e946ef53e17cf83e194f9349ccb930b8654d4a74114c"
+SHA256 = "c82a760417226e01bfba7296bf4f52b0fbdfe4e798f85896c09e0e28ecf3ec32"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 

@@ -110,8 +110,10 @@ def _wear(
     repeats = [-(-size // SIZE) for size in crowns.shape]
     noise = np.tile(fractal(source("wear"), 0.85, longest=90.0), repeats)
     noise = noise[: crowns.shape[0], : crowns.shape[1]]
-    most = 22.0 if any(one.surface == Surface.DESERT for one in mesh.palette) else 40.0
-    light = most * (1.0 - 0.55 * np.maximum(road, solid > 0)) * noise
+    # Hollows, where it is damp or dark gravel lies, are fewer and darker than what is dry.
+    noise -= 1.3 * np.maximum(-0.7 - noise, 0.0)
+    most = 38.0 if any(one.surface == Surface.DESERT for one in mesh.palette) else 44.0
+    light = most * (1.0 - 0.62 * np.maximum(road, solid > 0)) * noise
     light += 14.0 * verge * (1.0 + 0.6 * noise) - 16.0 * (crowns > 0)
     light[0, 0] = 0.0  # stands for all that lies beyond the map
     return np.round(np.clip(EVEN + light, 0.0, 255.0)).astype(np.uint32)

@@ -89,7 +89,7 @@ def track_map(scene: Scene) -> TrackMap:
     left = np.concatenate([normal for _, normal in stations])
     # Paths wander and their wear varies, from lane to lane too; neighbouring points agree.
     sway, uneven = _waves(middle, 11.0, 1), _waves(middle, 23.0, 2)
-    wander = 0.06 * sway + 0.24 * _waves(middle, 37.0, 4)
+    wander = 0.12 * sway + 0.36 * _waves(middle, 37.0, 4)
     share = np.random.default_rng(5).uniform(0.72, 1.0, len(ways))
     strength = np.array([much for _, much in ways]) * share
     strength = np.repeat(strength, [len(points) for points, _ in stations])
@@ -102,7 +102,7 @@ def track_map(scene: Scene) -> TrackMap:
         away = low + (cell + 0.5) * texel - middle
         aside = (away * left).sum(axis=1)
         onward = along + away[:, 0] * left[:, 1] - away[:, 1] * left[:, 0]
-        much = strength * (0.86 + 0.16 * uneven + 0.3 * _streaks(way, onward, aside))
+        much = strength * (0.8 + 0.26 * uneven + 0.3 * _streaks(way, onward, aside))
         much *= _profile(aside + wander)
         np.maximum.at(worn, (cell[inside, 1], cell[inside, 0]), much[inside].astype(np.float32))
     worn = _sheltered(scene, worn, low, texel)
