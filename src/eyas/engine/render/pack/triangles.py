@@ -80,9 +80,7 @@ def shading_rows(
     whole[:, 15] = (objects << 16) | materials
     bent = np.flatnonzero(slopes[:, 23] < 0.0)
     whole[bent, 11] = np.arange(len(bent))
-    # A row even where nothing is bent: lanes beside those that are bent read the first.
-    own = slopes[bent if len(bent) else [0]]
-    return rows, np.concatenate([own[:, 14:23], own[:, 11:14]], axis=1)
+    return rows, np.concatenate([slopes[bent, 14:23], slopes[bent, 11:14]], axis=1)
 
 
 def looks_of(materials: MaterialTable) -> NDArray[np.float32]:
