@@ -136,12 +136,14 @@ def attributes_of(
     """Return what a triangle has at a world point [m]."""
     geometry, moved = band.geometry, row >= 0
     shading = geometry.shading
-    x0, y0, z0, u_x, u_y, u_z, u0, v_x = transposed(shading, triangle, 0, SHADING_COLUMNS)
-    v_y, v_z, v0, nx, ny, nz, density, word = transposed(shading, triangle, 8, SHADING_COLUMNS)
+    v_y, v_z, v0, nx, ny, nz, density, word = transposed(
+        shading, triangle, 8, SHADING_COLUMNS, triangle
+    )
     material = to_i4(bit_pattern(word) & i4(0xFFFF))
     layer, kind, red, green, blue, emission, crown, _ = transposed(
-        geometry.look, material, 0, LOOK_COLUMNS
+        geometry.look, material, 0, LOOK_COLUMNS, triangle
     )
+    x0, y0, z0, u_x, u_y, u_z, u0, v_x = transposed(shading, triangle, 0, SHADING_COLUMNS, triangle)
     own = point
     if moved:
         own = _to_own(instance_frame(band, row), point)
@@ -151,9 +153,9 @@ def attributes_of(
     if any_of(bent):
         at = select(bent, bit_pattern(nx), i4(0))
         nx_x, nx_y, nx_z, ny_x, ny_y, ny_z, nz_x, nz_y = transposed(
-            geometry.bent, at, 0, BENT_COLUMNS
+            geometry.bent, at, 0, BENT_COLUMNS, triangle
         )
-        _, _, _, _, nz_z, mx, my, mz = transposed(geometry.bent, at, 4, BENT_COLUMNS)
+        _, _, _, _, nz_z, mx, my, mz = transposed(geometry.bent, at, 4, BENT_COLUMNS, triangle)
         nx = select(bent, mx + (nx_x * x + nx_y * y + nx_z * z), nx)
         ny = select(bent, my + (ny_x * x + ny_y * y + ny_z * z), ny)
         nz = select(bent, mz + (nz_x * x + nz_y * y + nz_z * z), nz)
