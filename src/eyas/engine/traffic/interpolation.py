@@ -9,6 +9,8 @@ from eyas.engine.state.motion import BLOCK, ActorState, Motion
 from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import hypot
 
+_BITS = BLOCK.bit_length() - 1
+
 
 class ActorPose(NamedTuple):
     """One actor at one time; fields as in `eyas.engine.state.motion.ActorState`."""
@@ -44,8 +46,9 @@ def sample_before(motion: Motion, time: float) -> int:
 @kernel(inline=True)
 def place_of(motion: Motion, row: int, actor: int) -> int:
     """Return where sample `row` of an actor is in `Motion.track`."""
-    start = int(motion.start[row // BLOCK, actor])
-    return ~start if start < 0 else start + row % BLOCK
+    start = int(motion.start[row >> _BITS, actor])
+    still = start >> 63  # all bits of an inverted number, without a branch
+    return (start ^ still) + (row & (BLOCK - 1) & ~still)
 
 
 @kernel(inline=True)
@@ -57,8 +60,11 @@ def interpolate_actor(
     """Return one actor at one time; times outside the samples are clamped to their ends."""
     row = sample_before(motion, time)
     f = _place(motion, time) - row
-    a = motion.track[place_of(motion, row, actor)]
-    b = motion.track[place_of(motion, row + 1, actor)]
+    at = place_of(motion, row, actor)
+    after = at + (motion.start[row >> _BITS, actor] >= 0)
+    if (row & (BLOCK - 1)) == BLOCK - 1:
+        after = place_of(motion, row + 1, actor)
+    a, b = motion.track[at], motion.track[after]
     on_a, on_b = motion.footing[a.footing], motion.footing[b.footing]
     step = 1.0 / motion.rate
     x, speed_x = _hermite(a.x, b.x, a.velocity_x, b.velocity_x, step, f)
