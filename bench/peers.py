@@ -9,8 +9,8 @@ textures either. Eyas draws everything that it draws by default; a last line is 
 own choice of levels. Times are those of all threads on the processor, and include reading the
 pictures back.
 
-HyperLux (pip, 0.1.8) is left out: its wheel holds C++ sources, which are compiled when they are first
-used and want stb and Assimp from GitHub then.
+HyperLux (pip, 0.1.8) is left out: its wheel holds C++ sources, which are compiled when they are
+first used and want stb and Assimp from GitHub then.
 """
 
 import argparse
