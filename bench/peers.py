@@ -10,7 +10,7 @@ own choice of levels. Times are those of all threads on the processor, and inclu
 pictures back.
 
 HyperLux (pip, 0.1.8) is left out: its wheel holds C++ sources, which are compiled when they are
-first used and want stb and Assimp from GitHub then.
+first used and want other sources from GitHub then.
 """
 
 import argparse

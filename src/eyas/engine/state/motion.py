@@ -239,7 +239,7 @@ def joined(motions: Sequence[Motion]) -> Motion:
     ]
     return Motion(
         track=track,
-        start=np.concatenate(starts, axis=1).astype(np.int32),
+        start=np.ascontiguousarray(np.concatenate(starts, axis=1), np.int32),
         samples=first.samples,
         footing=np.concatenate([motion.footing for motion in motions]),
         kind=np.concatenate([motion.kind for motion in motions]),

@@ -151,7 +151,7 @@ def transposed(typing_context, array, index, first, width, guide):
     """Return `array[index, first + k]` for k from 0 to 7, of rows of `width` float32.
 
     Eight loads and shuffles take the place of 64 loads; where all lanes of `guide` are the same, as
-    many are, so must those of `index` be, and each number is loaded into all of them. Lookups that
+    many are, so must those of `index` be, and each number is loaded into all of them. Loads that
     follow each other have one guide: the processor then foresees all branches but the first. Where
     lanes are threads, each loads four numbers at once: in arrays of whole rows, `width` and `first`
     must be multiples of four.
