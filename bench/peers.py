@@ -8,6 +8,9 @@ in haze. moderngl has a shadow map; panda3d's software renderer has no shadows, 
 textures either. Eyas draws everything that it draws by default; a last line is for Eyas with its
 own choice of levels. Times are those of all threads on the processor, and include reading the
 pictures back.
+
+HyperLux (pip, 0.1.8) is left out: its wheel holds C++ sources, which are compiled when they are
+first used and want other sources from GitHub then.
 """
 
 import argparse

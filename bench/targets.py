@@ -76,12 +76,13 @@ def _crowded(extras: list[dict[str, object]]) -> Callable[[], None]:
     simulation = build_simulation(validated(SimConfig, settings), together(1))
     simulation.reset()
     motion, rng = simulation.traffic.motion, np.random.default_rng(2)
-    count = motion.table.shape[1]
+    count, places = len(motion.kind), motion.places(np.arange(motion.samples))
     target = int(simulation.snapshot.targets.actor[0])
     centre = simulation.snapshot.targets.position[0]
     for axis, middle in (("x", centre[0]), ("y", centre[1])):
-        motion.table[axis] = middle + rng.uniform(-18.0, 18.0, count)
-        motion.table[axis][:, target] = middle
+        place = middle + rng.uniform(-18.0, 18.0, count)
+        place[target] = middle
+        motion.track[axis][places] = place
     motion.footing["present"] = 1.0
     camera = simulation.snapshot.cameras
     camera.position[0] = centre + np.array([0.0, 0.0, 50.0])

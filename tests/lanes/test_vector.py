@@ -226,7 +226,7 @@ def fetched(table, bytes_, halves, index, width, wide, single):
         store(wide, 3 * len(index) + at, to_f4(gather_pair(halves, places) >> u4(16)))
         after = gather_pair_after(halves, places, width)
         store(wide, 12 * len(index) + at, to_f4(after >> u4(16)))
-        for k, column in enumerate(transposed(table, places, 2, width)):
+        for k, column in enumerate(transposed(table, places, 2, width, places)):
             store(wide, (4 + k) * len(index) + at, column)
     for at in range(len(index)):
         place = index[at]
@@ -235,7 +235,7 @@ def fetched(table, bytes_, halves, index, width, wide, single):
         single[2, at] = to_f4(gather(bytes_, place))
         single[3, at] = to_f4(gather_pair(halves, place) >> u4(16))
         single[12, at] = to_f4(gather_pair_after(halves, place, width) >> u4(16))
-        for k, column in enumerate(transposed(table, place, 2, width)):
+        for k, column in enumerate(transposed(table, place, 2, width, place)):
             single[4 + k, at] = column
 
 

@@ -101,7 +101,7 @@ def lights(scene):
 @pytest.fixture(scope="module")
 def vehicles(scene):
     motion = load_assets(WorldConfig(map=NAME), TRAFFIC).traffic.motion
-    return motion._replace(table=motion.table[: TEN_MINUTES.samples]).sampled()
+    return motion.of(motion.table[: TEN_MINUTES.samples]).sampled()
 
 
 @pytest.fixture(scope="module")

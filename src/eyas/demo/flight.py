@@ -169,14 +169,14 @@ def build_world(config: EyasConfig, vehicles: int) -> DemoWorld:
     motion = assets.traffic.motion
     driven = np.isin(motion.kind, [kind_index(kind.name) for kind in VEHICLE_KINDS])
     kept = ~driven | (np.cumsum(driven) <= vehicles)
-    whole = motion._replace(table=motion.table[:, kept], kind=motion.kind[kept])
+    whole = motion._replace(start=motion.start[:, kept], kind=motion.kind[kept])
     targets, parked = _followed(crowd, whole.kind, driven[kept]), -1
     if crowd.follows_vehicles:
-        car = parked_car(assets, len(motion.table), motion.rate)
+        car = parked_car(assets, motion.samples, motion.rate)
         if car is not None:
             parked = len(whole.kind)
             whole, targets = joined([whole, car]), np.append(targets, True)
-    traffic = Replay(whole._replace(table=np.ascontiguousarray(whole.table)), targets)
+    traffic = Replay(whole._replace(start=np.ascontiguousarray(whole.start)), targets)
     own = replace(assets, traffic=traffic, rigs=Rigs(whole.kind))
     return DemoWorld(DemoSimulation(config, own, parked), own, parked)
 

@@ -80,19 +80,19 @@ def whole(
     """Return the next whole number from 0 to below `count`, as `Generator.integers`."""
     if count == 1:
         return 0
-    product = _half(state) * count
+    product = word(state) * count
     left = product & _WORD
     if left < count:
         least = (0x100000000 - count) % count
         while left < least:
-            product = _half(state) * count
+            product = word(state) * count
             left = product & _WORD
     return (product >> 32) & _WORD
 
 
 @kernel
-def _half(state: Words) -> int:
-    """Return the next 32 bits."""
+def word(state: Words) -> int:
+    """Return the next 32 bits, as `Generator.integers` of 2^32."""
     if state[_HAS_HALF] == 1:
         state[_HAS_HALF] = 0
         return int(state[_HALF])

@@ -2,10 +2,11 @@
 
 A wheel brings it for all files of the package (`tools/build_hook.py`). In a clone, and of files
 that were edited, it is read when it is wanted and kept in the cache, in one file for each reader.
-It stays JSON until it is asked for: a process needs a part of 200,000 names, which take 13 MiB.
+It stays packed until it is asked for: a process needs a part of 200,000 names, which take 13 MiB.
 """
 
 import json
+import zlib
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import cached_property
@@ -51,7 +52,7 @@ class TextIndex:
         self._source = source
         self._read = read
         self.shipped = source.with_suffix(SUFFIX)  # The file that comes with a wheel
-        self._new: _Known = {}
+        self._new: dict[str, bytes] = {}
 
     def of(self, text: bytes) -> Any:  # noqa: ANN401  # JSON
         """Return what is read from a text; what `read` raises passes through."""
@@ -60,9 +61,11 @@ class TextIndex:
     def json_of(self, text: bytes) -> bytes:
         """Return the same as JSON, which is the same wherever it comes from."""
         digest = digest_of(text)
-        for known in (self._new, self._brought, self._kept):
+        if digest in self._new:
+            return self._new[digest]
+        for known in (self._brought, self._kept):
             if digest in known:
-                return bytes(known[digest])
+                return zlib.decompress(known[digest])
         self._new[digest] = told = self._json_of(text)
         return told
 
@@ -70,8 +73,9 @@ class TextIndex:
         """Keep what was read since the last time, beside what other processes have kept."""
         if not self._new:
             return
-        new, self._new = self._new, {}
-        self._kept = dict([*(self._in_cache() | new).items()][-_MOST:])
+        new = {digest: zlib.compress(told) for digest, told in self._new.items()}
+        self._new = {}
+        self._kept = dict([*{**self._in_cache(), **new}.items()][-_MOST:])
         try:
             made_folder(self._path.parent)
             secured(self._path.parent)
@@ -84,7 +88,7 @@ class TextIndex:
         """Return the content of the file that ships, for some texts."""
         found = {digest_of(text): self._json_of(text) for text in texts}
         names = sorted(found)
-        return b"".join(packed([self._name, names], [found[name] for name in names]))
+        return b"".join(packed([self._name, names], [zlib.compress(found[name]) for name in names]))
 
     def _json_of(self, text: bytes) -> bytes:
         # In the same order wherever it comes from: builds are digests of it.
@@ -92,7 +96,8 @@ class TextIndex:
 
     @cached_property
     def _name(self) -> str:
-        return f"eyas-{digest_of(self._source.read_bytes())}{SUFFIX}"
+        # Earlier builds have kept it as it is, under a name without the word.
+        return f"eyas-{digest_of(b'zlib' + self._source.read_bytes())}{SUFFIX}"
 
     @property
     def _path(self) -> Path:

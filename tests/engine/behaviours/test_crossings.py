@@ -39,7 +39,7 @@ def ground():
 def driven(traffic=None) -> SampledMotion:
     config = SimConfig(traffic=traffic or TrafficConfig())
     motion = load_assets(config.world, config.traffic).traffic.motion
-    return motion._replace(table=motion.table[: FIVE_MINUTES.samples]).sampled()
+    return motion.of(motion.table[: FIVE_MINUTES.samples]).sampled()
 
 
 @pytest.fixture(scope="module")

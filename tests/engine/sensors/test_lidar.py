@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.camera.config import MountConfig
+from eyas.engine.core.rng import EpisodeKey
 from eyas.engine.sensors.bodies import BODY
 from eyas.engine.sensors.config import LidarConfig
 from eyas.engine.sensors.lidar import MOUNT, Lidar
@@ -25,7 +26,7 @@ def turned(world, config=EXACT, seed=0):
     count = len(snapshot.episodes.tick)
     lidar = Lidar(config, snapshot, obstacles, np.ones(count, np.bool_))
     for tracker in range(count):
-        lidar.begin(tracker, np.random.default_rng(seed + tracker))
+        lidar.begin(tracker, EpisodeKey(seed + tracker, 0, 0))
     lidar.advance()
     return lidar
 
@@ -161,7 +162,7 @@ def test_a_tracker_whose_time_stands_still_measures_nothing(around):
     snapshot, obstacles = around((0.0, 0, 5.0, 0), prisms=[(room(-5, -5, 5, 5), 0, 9)])
     active = np.ones(1, np.bool_)
     lidar = Lidar(EXACT, snapshot, obstacles, active)
-    lidar.begin(0, np.random.default_rng(0))
+    lidar.begin(0, EpisodeKey(0, 0, 0))
     lidar.advance()
     before = lidar.ranges()
     snapshot.trackers.position[0, 0] = 1.0
@@ -273,7 +274,7 @@ def test_late_points_are_those_of_so_many_steps_ago(around):
     active = np.ones(1, np.bool_)
     lidars = [Lidar(c, snapshot, obstacles, active, latest=50) for c in (on_time, delayed)]
     for lidar in lidars:
-        lidar.begin(0, np.random.default_rng(0))
+        lidar.begin(0, EpisodeKey(0, 0, 0))
         lidar.advance()
     told = [(lidars[0].ranges(), lidars[0].packets())]
     for step in range(1, 180):
@@ -297,3 +298,21 @@ def test_other_drones_are_seen(around):
     assert lidar.ranges()[1, 0] == pytest.approx(4.0 - BODY[0] / 2)
     assert lidar.things()[[0, 1], [200, 0]].tolist() == [ACTOR_OBJECT + 2, ACTOR_OBJECT + 1]
     assert np.isinf(turned(around(*poses)).ranges()).all()
+
+
+@pytest.mark.parametrize("steps", [1, 20, 41, 42, 60])  # a turn takes 41.7
+def test_the_first_turn_is_the_same_whenever_it_is_asked_for(around, steps):
+    def flown(asked_at_once: bool) -> list:
+        snapshot, obstacles = around((0.0, 0, 5.0, 0), prisms=[(room(-5, -5, 5, 5), 0, 9)])
+        lidar = turned((snapshot, obstacles), LidarConfig(enabled=True))
+        if asked_at_once:
+            lidar.ranges()
+        for step in range(1, steps + 1):
+            snapshot.trackers.position[0, 0] = 0.01 * step
+            snapshot.episodes.step_count[0] = step
+            snapshot.episodes.tick[0] = 1000 + step
+            lidar.advance()
+        return [lidar.ranges(), lidar.things(), lidar.packets()]
+
+    for late, early in zip(flown(False), flown(True), strict=True):
+        np.testing.assert_array_equal(late, early)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.camera.config import MountConfig
+from eyas.engine.core.rng import EpisodeKey
 from eyas.engine.sensors.config import LidarConfig
 from eyas.engine.sensors.lidar import Lidar
 from eyas.engine.state.terrain import Terrain, ground_at
@@ -21,7 +22,7 @@ def scanned(world):
     """Distances and things around the first tracker, and the rays in the world frame."""
     snapshot, obstacles = world
     lidar = Lidar(CONFIG, snapshot, obstacles, np.ones(1, np.bool_), mount=MIDDLE)
-    lidar.begin(0, np.random.default_rng(0))
+    lidar.begin(0, EpisodeKey(0, 0, 0))
     lidar.advance()
     return lidar.ranges()[0], lidar.things()[0]
 

@@ -26,7 +26,7 @@ def assets(config) -> Assets:
 def assets_where(assets):
     """Build the assets with 12 s of its traffic, in which vehicles are away at times [s]."""
     motion = assets.traffic.motion
-    motion = motion._replace(table=motion.table[: 1 + round(12.0 * motion.rate)]).sampled()
+    motion = motion.of(motion.table[: 1 + round(12.0 * motion.rate)]).sampled()
 
     def build(*away: tuple[float, float]) -> Assets:
         cut = motion.table.copy()

@@ -29,13 +29,14 @@ def test_a_sample_is_aligned_for_kernels():
 
 
 def test_what_is_packed_is_the_same_samples():
-    table = np.zeros((6, 3), SAMPLE)
+    table = np.zeros((45, 3), SAMPLE)
     rng = np.random.default_rng(1)
     for name in OFTEN:
         table[name] = rng.normal(size=table.shape)
     for name in SELDOM:
         table[name] = rng.integers(2, size=table.shape)
     table["z"][:, 1] = table["z"][0, 1]
+    table[12:34, 0] = table[11, 0]  # it stands, from and to the middle of a block
     first, second = (
         SampledMotion(half, np.zeros(half.shape[1], np.int32), 10.0).packed()
         for half in (table[:, :2], table[:, 2:])
@@ -46,3 +47,4 @@ def test_what_is_packed_is_the_same_samples():
 def test_what_does_not_change_lies_there_once():
     still = motion(2, samples=50)
     assert len(still.footing) == 2
+    assert len(still.track) == 14  # in each of seven blocks, once for each actor

@@ -58,7 +58,7 @@ def test_heights_between_samples_follow_the_motion(wandering, plane):
     """A curve through the samples that took its slope from elsewhere would leave the plane."""
     coarse = wandering.rate / 10.0
     motion = recorded_motion(wandering, plane, np.zeros(3, np.int32))
-    few = motion._replace(table=motion.table[::10].copy(), rate=coarse)
+    few = motion.of(motion.table[::10])._replace(rate=coarse)
     out = ActorState.create(400, 3)
     interpolate_actors(few, np.linspace(0.0, 20.0, 400), out)
     x, y, z = np.moveaxis(out.position[:, :2], -1, 0)

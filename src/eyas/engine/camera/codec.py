@@ -106,7 +106,7 @@ def _turned(block: NDArray[np.float32], rows: Eight) -> Eight:
     """Return eight rows as columns, by way of some working memory."""
     for k in range(8):
         store(block, 8 * k, rows[k])
-    turned: Eight = transposed(block, lane_numbers(), 0, 8)
+    turned: Eight = transposed(block, lane_numbers(), 0, 8, lane_numbers())
     return turned
 
 

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from eyas.engine.camera.config import MountConfig
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.core.counter_rng import SEEDS, normal, uniform
+from eyas.engine.core.counter_rng import normal, uniform
 from eyas.engine.core.frames import rotate
+from eyas.engine.core.rng import EpisodeKey, room_key
 from eyas.engine.sensors.config import LidarConfig
 from eyas.engine.sensors.mount import turn_of
 from eyas.engine.sensors.movers import find_boxes
@@ -23,12 +24,15 @@ from eyas.engine.sensors.rays import Ray, cast_ray
 from eyas.engine.state.episode import EpisodeState
 from eyas.engine.state.snapshot import Snapshot, TrackerState
 from eyas.lanes import compiled, exact, kernel
+from eyas.lanes.pcg64 import STATE, begin_stream, word
 
 MOUNT = MountConfig(z=0.031)  # Where the original's drone has it
 
 CAR_MOUNT = MountConfig(x=-0.1)  # Where the original's car has it
 
 POINT_NUMBERS = 5  # Numbers of each point in a radar packet: x, y, z, layer, time
+
+_ROOM = room_key("lidar")
 
 _ROUNDING = 1e-9  # Keeps a point that is due at a whole step from being due one later
 
@@ -40,7 +44,9 @@ class Lidar:
     """The lidars of N trackers.
 
     Points are numbered through an episode, those of its first turn below 0. The latest are kept, as
-    many as a message may be late: what is told is the last turn of some time ago.
+    many as a message may be late: what is told is the last turn of some time ago. The first turn,
+    which the head had made before the episode, is measured when it is asked for, as far as no later
+    point has taken its place; where trackers share a world, at once, as all that stood there moves.
     """
 
     def __init__(
@@ -58,13 +64,15 @@ class Lidar:
         self._per_step = points * config.frequency * PHYSICS_STEP
         kept = points + math.ceil((latest + config.delay_steps) * self._per_step) + 1
         self._turned = np.zeros(count, np.int64)
-        self._seed = np.zeros(count, np.int64)
+        self._key = np.zeros((count, len(EpisodeKey._fields)), np.int64)
         self._range = np.full((count, kept), np.inf)
         self._thing = np.full((count, kept), -1, np.int32)
         self._time = np.zeros((count, kept))
         angle = -math.pi - 2.0 * math.pi / points * np.arange(points)
         self._ahead = np.stack([exact.cos(angle), exact.sin(angle)], axis=1)
         place = config.mount or mount
+        self._waiting = np.zeros(count, np.bool_)
+        alone = len(np.unique(obstacles.movers.world)) == count
         scan = _Scan(
             snapshot.trackers,
             snapshot.episodes,
@@ -73,10 +81,16 @@ class Lidar:
             np.array([place.x, place.y, place.z]),
             np.ascontiguousarray(exact.product(self._ahead, turn_of(place)[:, :2].T)),
             self._turned,
-            self._seed,
+            self._key,
+            np.zeros(count, np.int64),
             self._range,
             self._thing,
             self._time,
+            np.zeros(STATE, np.int64),
+            _Starts(
+                self._waiting, np.zeros((count, 3)), np.zeros((count, 4)), np.zeros(count, np.int64)
+            ),
+            alone,
             self._per_step,
             config.min_range,
             config.max_range,
@@ -85,16 +99,21 @@ class Lidar:
             config.resolution,
             config.drop_out,
         )
-        self._scan = _scan_all.bind(scan)
+        self._scan, self._scan_first = _scan_all.bind(scan), _scan_first_turns.bind(scan)
 
-    def begin(self, tracker: int, rng: np.random.Generator) -> None:
-        """Begin an episode: the next `advance` measures a whole turn from where the tracker is."""
+    def begin(self, tracker: int, key: EpisodeKey) -> None:
+        """Begin an episode at the next `advance`, with a whole turn from where the tracker is."""
         self._turned[tracker] = -self._points
-        self._seed[tracker] = rng.integers(SEEDS)
+        self._key[tracker] = key
 
     def advance(self) -> None:
         """Measure the points that have become due since the last call."""
         self._scan()
+
+    def settle(self) -> None:
+        """Measure the first turns that wait, before what was around the trackers changes."""
+        if self._waiting.any():
+            self._scan_first()
 
     def ranges(self, late: NDArray[np.int64] | None = None) -> Floats:
         """Return the latest distance of each point [m], infinity where nothing is within range,
@@ -138,12 +157,22 @@ class Lidar:
 
     def _told(self, kept: NDArray[Number], late: NDArray[np.int64] | None) -> NDArray[Number]:
         """Return what is told of a kept array: of each point, the last before the message."""
+        self.settle()
         step = np.maximum(self._clock - self._delay - (0 if late is None else late), 0)
         due = np.floor(step * self._per_step + _ROUNDING).astype(np.int64)
         last = np.minimum(due, self._turned)[:, None] - 1
         number = last - (last - np.arange(self._points)) % self._points
         told: NDArray[Number] = np.take_along_axis(kept, number % kept.shape[1], axis=1)
         return told
+
+
+class _Starts(NamedTuple):
+    """Where trackers began their episodes."""
+
+    waiting: NDArray[np.bool_]  # Whether the first turn is not measured yet, shape (N,)
+    position: Floats  # World frame [m], shape (N, 3)
+    orientation: Floats  # Shape (N, 4)
+    tick: NDArray[np.int64]  # Time in the traffic, in physics steps, shape (N,)
 
 
 class _Scan(NamedTuple):
@@ -156,11 +185,15 @@ class _Scan(NamedTuple):
     place: Floats  # Of the lidar, body frame [m], shape (3,)
     ahead: Floats  # Direction of each point in the body frame, shape (P, 3)
     turned: NDArray[np.int64]  # Points measured since the reset, shape (N,)
+    key: NDArray[np.int64]  # `EpisodeKey` of each, shape (N, 3)
     seed: NDArray[np.int64]  # Of the noise of the episode, shape (N,)
     range: Floats
     """Of the point of each number modulo K, the points that are kept [m], shape (N, K)."""
     thing: NDArray[np.int32]  # The same [object id]
     time: Floats  # The same [s]
+    stream: NDArray[np.int64]  # Working memory, see `eyas.lanes.pcg64`
+    starts: _Starts
+    alone: bool  # Each tracker has a world of its own
     per_step: float  # Points measured in a physics step
     nearest: float
     farthest: float
@@ -175,24 +208,58 @@ def _scan_all(scan: _Scan) -> None:
     """Measure the due points of all active trackers."""
     for n in range(scan.active.shape[0]):
         due = math.floor(scan.episodes.step_count[n] * scan.per_step + _ROUNDING)
-        if scan.active[n] and scan.turned[n] < due:
-            _scan_one(scan, n, due)
-        elif scan.turned[n] < 0:
-            _scan_one(scan, n, 0)
+        if (scan.active[n] and scan.turned[n] < due) or scan.turned[n] < 0:
+            last = due if scan.active[n] else 0
+            position, orientation = scan.trackers.position[n], scan.trackers.orientation[n]
+            if scan.turned[n] < 0:
+                key = scan.key[n]
+                begin_stream(scan.stream, key[0], _ROOM, key[1], key[2])
+                scan.seed[n] = word(scan.stream)
+                scan.starts.waiting[n] = scan.alone and last == 0
+            if scan.turned[n] < 0 and scan.starts.waiting[n]:
+                scan.starts.tick[n] = scan.episodes.tick[n]
+                for k in range(3):
+                    scan.starts.position[n, k] = position[k]
+                for k in range(4):
+                    scan.starts.orientation[n, k] = orientation[k]
+            else:
+                first = max(scan.turned[n], last - scan.ahead.shape[0])
+                _scan_one(scan, n, position, orientation, scan.episodes.tick[n], first, last)
+            scan.turned[n] = last
+
+
+@compiled
+def _scan_first_turns(scan: _Scan) -> None:
+    """Measure what is still kept of the first turns that wait."""
+    starts, points = scan.starts, scan.ahead.shape[0]
+    for n in range(scan.active.shape[0]):
+        if starts.waiting[n]:
+            first = max(-points, scan.turned[n] - scan.range.shape[1])
+            place, orientation = starts.position[n], starts.orientation[n]
+            _scan_one(scan, n, place, orientation, starts.tick[n], first, 0)
+            starts.waiting[n] = False
 
 
 @kernel(inline=True)
-def _scan_one(scan: _Scan, n: int, due: int) -> None:
-    """Measure the points of tracker `n` up to the number that is due."""
-    trackers, tick = scan.trackers, scan.episodes.tick[n]
-    position, orientation = trackers.position[n], trackers.orientation[n]
+def _scan_one(
+    scan: _Scan,
+    n: int,  # The tracker
+    position: Floats,  # World frame [m], shape (3,)
+    orientation: Floats,  # Shape (4,)
+    tick: int,  # Time in the traffic, in physics steps
+    first: int,  # Number of the first point
+    last: int,  # The one after the last
+) -> None:
+    """Measure points of a tracker."""
+    if first >= last:
+        return
     place = scan.place
     off_x, off_y, off_z = rotate(orientation, place[0], place[1], place[2])
     x, y, z = position[0] + off_x, position[1] + off_y, position[2] + off_z
     points, kept, reach = scan.ahead.shape[0], scan.range.shape[1], scan.farthest
     obstacles = scan.obstacles
     boxes = find_boxes(obstacles.movers, n, tick, (x, y, z), reach, obstacles.boxes)
-    for number in range(max(scan.turned[n], due - points), due):
+    for number in range(first, last):
         aim, slot = scan.ahead[number % points], number % kept
         ahead_x, ahead_y, ahead_z = rotate(orientation, aim[0], aim[1], aim[2])
         ray = Ray(x, y, z, ahead_x, ahead_y, ahead_z)
@@ -200,7 +267,6 @@ def _scan_one(scan: _Scan, n: int, due: int) -> None:
         scan.range[n, slot] = _measured(scan, scan.seed[n], number, distance)
         scan.thing[n, slot] = thing if scan.range[n, slot] < math.inf else -1
         scan.time[n, slot] = tick * PHYSICS_STEP
-    scan.turned[n] = due
 
 
 @kernel(inline=True)

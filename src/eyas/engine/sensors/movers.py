@@ -7,7 +7,7 @@ from eyas.engine.sensors.bodies import body_box
 from eyas.engine.sensors.obstacles import Boxes, MovingObstacles
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.state.snapshot import TrackerState
-from eyas.engine.traffic.interpolation import ActorPose, interpolate_actor, sample_before
+from eyas.engine.traffic.interpolation import ActorPose, interpolate_actor, place_of, sample_before
 from eyas.engine.traffic.trailer import folded
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos
@@ -28,8 +28,8 @@ def find_boxes(
     """Find the boxes of what moves and may be near a place; return their number."""
     count, motion, time = 0, movers.motion, tick * PHYSICS_STEP
     row, world, far = sample_before(motion, time), movers.world[n], reach + _SLACK
-    for actor in range(motion.table.shape[1]):
-        sample = motion.table[row, actor]
+    for actor in range(motion.start.shape[1]):
+        sample = motion.track[place_of(motion, row, actor)]
         # Most are far away: a look at the last sample is a tenth of an interpolation.
         if abs(sample.x - place[0]) > far or abs(sample.y - place[1]) > far:
             continue
@@ -53,7 +53,7 @@ def find_boxes(
         at = bodies.position[other]
         if abs(at[0] - place[0]) < far and abs(at[1] - place[1]) < far:
             _write_body(bodies, other, boxes, count)
-            boxes.thing[count] = ACTOR_OBJECT + motion.table.shape[1] + other
+            boxes.thing[count] = ACTOR_OBJECT + motion.start.shape[1] + other
             count += 1
     for box in range(count):
         _write_bounds(boxes, box)

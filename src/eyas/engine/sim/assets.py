@@ -162,7 +162,7 @@ def _traffic(
     around = CrowdSurroundings(scene, clock, _seed_of(config), vehicles, lights)
     motion, targets = with_crowd(crowd, around)
     replay = Replay(motion, targets)
-    let_go(motion.table)  # which has been read to its end
+    let_go(motion.track)  # which has been read to its end
     return replay
 
 

@@ -18,7 +18,15 @@ from eyas.engine.core.variation import Mirrored, Variation
 from eyas.engine.custom.config import CustomConfig
 from eyas.engine.sim.air_motion import air_motions
 from eyas.engine.sim.crowd import Crowd
-from eyas.engine.state.motion import FOOTING, TRACK, Motion, SampledMotion, joined, packed
+from eyas.engine.state.motion import (
+    FOOTING,
+    TRACK,
+    Motion,
+    SampledMotion,
+    blocks_of,
+    joined,
+    packed,
+)
 from eyas.engine.state.scene import Scene
 from eyas.engine.targets.catalogue import MODELS, habit_of, kind_index, models_of
 from eyas.engine.targets.habit import Behaviour
@@ -87,7 +95,7 @@ def with_crowd(
         motions.append(_all_kept(groups, crowd, around, vehicles))
     if vehicles is not None:
         (first, *_), count = motions, len(vehicles.kind)
-        driven = first._replace(table=first.table[:, :count], kind=vehicles.kind)
+        driven = first._replace(start=first.start[:, :count], kind=vehicles.kind)
         around = around._replace(vehicles=vehicles._replace(motion=driven.sampled))
     if crowd.custom is not None:
         motions += crowd_motions(crowd, around)
@@ -133,12 +141,14 @@ def _all_kept(
         parts = [lambda: vehicles.motion().table, *parts]
     make = partial(_side_by_side, parts, (around.clock.samples, len(kind)))
     kept = cached(EntryKind.MOTION, make, inputs, of=_Numbers)
-    table, footing = kept.table.view(TRACK)[..., 0], kept.footing.view(FOOTING)[:, 0]
+    track, footing = (
+        each.view(of)[:, 0] for each, of in ((kept.track, TRACK), (kept.footing, FOOTING))
+    )
     lamps = np.zeros((0, 0), np.uint8)
     if vehicles is not None and vehicles.lamps.size:
-        lamps = np.zeros(table.shape, np.uint8)
+        lamps = np.zeros((kept.samples, len(kind)), np.uint8)
         lamps[:, : len(vehicles.kind)] = vehicles.lamps
-    return Motion(table, footing, kind, around.clock.rate, 0.0, lamps)
+    return Motion(track, kept.start, kept.samples, footing, kind, around.clock.rate, 0.0, lamps)
 
 
 def _count(group: ScriptedGroup) -> int:
@@ -154,9 +164,11 @@ def _ground(around: CrowdSurroundings, driven: bool) -> "WalkingGround":
 
 
 class _Numbers(NamedTuple):
-    """`Motion.table` and `Motion.footing` as they are kept."""
+    """Fields of `Motion` of the same names as they are kept."""
 
-    table: NDArray[np.uint32]
+    track: NDArray[np.uint32]
+    start: NDArray[np.int32]
+    samples: int
     footing: NDArray[np.uint32]
 
 
@@ -170,7 +182,8 @@ def _side_by_side(
         table["footing"] += np.uint32(len(every))
         made[:, first : first + table.shape[1]] = table
         every, first = np.concatenate([every, footing]), first + table.shape[1]
-    return _Numbers(made[..., None].view(np.uint32), every[:, None].view(np.uint32))
+    track, start, samples = blocks_of(made)
+    return _Numbers(track[:, None].view(np.uint32), start, samples, every[:, None].view(np.uint32))
 
 
 def _samples_of(

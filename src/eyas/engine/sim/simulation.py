@@ -283,6 +283,7 @@ class Simulation:
 
         In a world of several trackers, all look like the target of the last.
         """
+        self._stepper.sensors.settle()
         for tracker, actor in enumerate(self.snapshot.targets.actor.tolist()):
             self._worlds.make_alike(tracker, actor)
 
@@ -291,6 +292,7 @@ class Simulation:
 
         What is known of a target is not changed: `follow` it again.
         """
+        self._stepper.sensors.settle()
         self._worlds.dress(tracker, actor, model, colour)
 
     def copy_world(self, tracker: int, source: int) -> None:

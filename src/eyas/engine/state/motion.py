@@ -48,13 +48,23 @@ class Lamp(IntFlag):
     RIGHT = 4  # It is going to go right: its indicators on the right blink
 
 
+BLOCK: Final = 8  # Samples of an actor that are kept together
+
+_AT_ONCE: Final = 512  # Samples that are sorted into blocks together
+
 _DARK: Final = np.zeros((0, 0), np.uint8)  # Lamps of actors that have none
 
 
 class Motion(NamedTuple):
     """Sampled motion of A actors, interpolated by kernels (`eyas.engine.traffic.interpolation`)."""
 
-    table: NDArray[np.void]  # Samples of dtype `TRACK`, shape (S, A), S at least 2
+    track: NDArray[np.void]
+    """Samples of dtype `TRACK`, shape (N,): of each actor `BLOCK` after each other, or one where it
+    stands still or is away, as in a quarter of all."""
+    start: NDArray[np.int32]
+    """Where the samples of each block of each actor begin in `track`, or the bits of that number
+    inverted where all are the same, shape (blocks, A)."""
+    samples: int  # S, at least 2
     footing: NDArray[np.void]  # Of dtype `FOOTING`, shape (F,)
     kind: NDArray[np.int32]
     """Kind of each actor: index into `eyas.engine.targets.catalogue.KINDS`, shape (A,)."""
@@ -64,14 +74,31 @@ class Motion(NamedTuple):
     lamps: NDArray[np.uint8] = _DARK
     """`Lamp` of each actor at each sample, shape (S, A), or (0, 0) where nobody signals."""
 
+    def places(self, rows: NDArray[np.integer]) -> NDArray[np.integer]:
+        """Return where some samples of all actors are in `track`, shape (R, A)."""
+        start = self.start[rows // BLOCK]
+        own: NDArray[np.integer] = np.where(start < 0, ~start, start + (rows % BLOCK)[:, None])
+        return own
+
+    @property
+    def table(self) -> NDArray[np.void]:
+        """A copy of all samples of dtype `TRACK`, shape (S, A)."""
+        samples: NDArray[np.void] = self.track[self.places(np.arange(self.samples))]
+        return samples
+
+    def of(self, table: NDArray[np.void]) -> "Motion":
+        """Return the same with other samples of dtype `TRACK`, shape (S, A)."""
+        return self._replace(**blocks_of(table)._asdict())
+
     def sampled(self) -> "SampledMotion":
         """Return the same with whole samples."""
-        made = np.zeros(self.table.shape, SAMPLE)
+        table = self.table
+        made = np.zeros(table.shape, SAMPLE)
         for name in OFTEN:
-            made[name] = self.table[name]
+            made[name] = table[name]
         for name in SELDOM:
-            made[name] = self.footing[name][self.table["footing"]]
-        return SampledMotion(made, *self[2:])
+            made[name] = self.footing[name][table["footing"]]
+        return SampledMotion(made, *self[4:])
 
 
 class SampledMotion(NamedTuple):
@@ -85,7 +112,36 @@ class SampledMotion(NamedTuple):
 
     def packed(self) -> Motion:
         """Return the same for kernels."""
-        return Motion(*packed(self.table), self.kind, self.rate, self.first_time, self.lamps)
+        table, footing = packed(self.table)
+        return Motion(*blocks_of(table), footing, self.kind, self.rate, self.first_time, self.lamps)
+
+
+class Blocks(NamedTuple):
+    """Fields of `Motion` of the same names."""
+
+    track: NDArray[np.void]
+    start: NDArray[np.int32]
+    samples: int
+
+
+def blocks_of(table: NDArray[np.void]) -> Blocks:
+    """Return the blocks of samples of dtype `TRACK`, shape (S, A)."""
+    samples, actors = table.shape
+    tracks, starts, count = [], [], 0
+    for first in range(0, samples, _AT_ONCE):  # all at once would take the memory of three tables
+        some = table[first : first + _AT_ONCE]
+        some = np.concatenate([some, np.repeat(some[-1:], -len(some) % BLOCK, axis=0)])
+        whole = np.ascontiguousarray(some.reshape(len(some) // BLOCK, BLOCK, actors).swapaxes(1, 2))
+        numbers = whole[..., None].view(np.uint64)  # they compare faster than records
+        still = (numbers[:, :, 1:] == numbers[:, :, :1]).all(axis=(2, 3))
+        kept = np.ones(whole.shape, np.bool_)
+        kept[still, 1:] = False
+        many = kept.sum(axis=2)
+        start = np.cumsum(many).reshape(many.shape) - many + count
+        tracks.append(whole[kept])
+        starts.append(np.where(still, ~start, start).astype(np.int32))
+        count += len(tracks[-1])
+    return Blocks(np.concatenate(tracks), np.concatenate(starts), samples)
 
 
 def packed(samples: NDArray[np.void]) -> tuple[NDArray[np.void], NDArray[np.void]]:
@@ -161,7 +217,7 @@ def joined(motions: Sequence[Motion]) -> Motion:
     if len(motions) == 1:
         return first
     for other in motions[1:]:
-        times = [(len(m.table), m.rate, m.first_time) for m in (first, other)]
+        times = [(m.samples, m.rate, m.first_time) for m in (first, other)]
         if times[0] != times[1]:
             raise ValueError(
                 "motions: samples, rate [Hz] and first time [s] are {} and {}; "
@@ -170,17 +226,21 @@ def joined(motions: Sequence[Motion]) -> Motion:
     lamps = _DARK
     if any(motion.lamps.size for motion in motions):
         own = [
-            motion.lamps if motion.lamps.size else np.zeros(motion.table.shape, np.uint8)
-            for motion in motions
+            m.lamps if m.lamps.size else np.zeros((m.samples, len(m.kind)), np.uint8)
+            for m in motions
         ]
         lamps = np.concatenate(own, axis=1)
-    table = np.concatenate([motion.table for motion in motions], axis=1)
-    counts = [len(motion.footing) for motion in motions]
-    table["footing"] += np.repeat(
-        np.cumsum(counts) - counts, [len(m.kind) for m in motions]
-    ).astype(np.uint32)
+    track = np.concatenate([motion.track for motion in motions])
+    counts, tracks = np.array([[len(m.footing), len(m.track)] for m in motions]).T
+    track["footing"] += np.repeat(np.cumsum(counts) - counts, tracks).astype(np.uint32)
+    starts = [
+        np.where(m.start < 0, m.start - before, m.start + before)
+        for m, before in zip(motions, (np.cumsum(tracks) - tracks).tolist(), strict=True)
+    ]
     return Motion(
-        table=table,
+        track=track,
+        start=np.ascontiguousarray(np.concatenate(starts, axis=1), np.int32),
+        samples=first.samples,
         footing=np.concatenate([motion.footing for motion in motions]),
         kind=np.concatenate([motion.kind for motion in motions]),
         rate=first.rate,

@@ -5,9 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.state.motion import ActorState, Motion
+from eyas.engine.state.motion import BLOCK, ActorState, Motion
 from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import hypot
+
+_BITS = BLOCK.bit_length() - 1
 
 
 class ActorPose(NamedTuple):
@@ -31,15 +33,22 @@ class ActorPose(NamedTuple):
 @kernel(inline=True)
 def _place(motion: Motion, time: float) -> float:
     """Return a time in samples since the first, within the motion."""
-    last = motion.table.shape[0] - 1
+    last = motion.samples - 1
     return min(max((time - motion.first_time) * motion.rate, 0.0), float(last))
 
 
 @kernel(inline=True)
 def sample_before(motion: Motion, time: float) -> int:
     """Return the sample at the beginning of the interval that a time [s] lies in."""
-    last: int = motion.table.shape[0] - 1
-    return min(int(_place(motion, time)), last - 1)
+    return min(int(_place(motion, time)), motion.samples - 2)
+
+
+@kernel(inline=True)
+def place_of(motion: Motion, row: int, actor: int) -> int:
+    """Return where sample `row` of an actor is in `Motion.track`."""
+    start = int(motion.start[row >> _BITS, actor])
+    still = start >> 63  # all bits of an inverted number, without a branch
+    return (start ^ still) + (row & (BLOCK - 1) & ~still)
 
 
 @kernel(inline=True)
@@ -51,8 +60,11 @@ def interpolate_actor(
     """Return one actor at one time; times outside the samples are clamped to their ends."""
     row = sample_before(motion, time)
     f = _place(motion, time) - row
-    a = motion.table[row, actor]
-    b = motion.table[row + 1, actor]
+    at = place_of(motion, row, actor)
+    after = at + (motion.start[row >> _BITS, actor] >= 0)
+    if (row & (BLOCK - 1)) == BLOCK - 1:
+        after = place_of(motion, row + 1, actor)
+    a, b = motion.track[at], motion.track[after]
     on_a, on_b = motion.footing[a.footing], motion.footing[b.footing]
     step = 1.0 / motion.rate
     x, speed_x = _hermite(a.x, b.x, a.velocity_x, b.velocity_x, step, f)
@@ -113,6 +125,6 @@ def interpolate_actors(motion: Motion, time: NDArray[np.float64], out: ActorStat
 @compiled
 def _interpolate(motion: Motion, time: NDArray[np.float64], out: ActorState) -> None:
     for world in range(len(time)):
-        for actor in range(motion.table.shape[1]):
+        for actor in range(motion.start.shape[1]):
             pose = interpolate_actor(motion, actor, time[world])
             write_actor(pose, out, world, actor)

@@ -16,7 +16,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.state.motion import FOOTING, OFTEN, SELDOM, TRACK, ActorState, Motion, joined
+from eyas.engine.state.motion import (
+    BLOCK,
+    FOOTING,
+    OFTEN,
+    SELDOM,
+    TRACK,
+    ActorState,
+    Motion,
+    joined,
+)
 from eyas.engine.state.roads import RoadGraph
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.traffic.config import Demand, TrafficConfig, VehicleType
@@ -215,12 +224,13 @@ class LiveSumo:
         samples = round(duration * RATE) + 1
         kinds = np.array([kind(name) for name in self._run.actors], np.int32)
         # The system gives memory only to what is written.
-        shape = samples, len(kinds)
-        table, footing = np.zeros(shape, TRACK), np.zeros(samples * len(kinds), FOOTING)
-        table["footing"] = np.arange(len(footing), dtype=np.uint32).reshape(shape)
-        empty = Motion(table, footing, kinds, float(RATE), 0.0)
+        start = BLOCK * np.arange(-(-samples // BLOCK) * len(kinds), dtype=np.int32)
+        track, footing = (np.zeros(BLOCK * len(start), kept) for kept in (TRACK, FOOTING))
+        track["footing"] = np.arange(len(track))
+        block = start.reshape(-1, len(kinds))
+        empty = Motion(track, block, samples, footing, kinds, float(RATE), 0.0)
         if lamps:
-            empty = empty._replace(lamps=np.zeros(empty.table.shape, np.uint8))
+            empty = empty._replace(lamps=np.zeros((samples, len(kinds)), np.uint8))
         self.motion: Final = joined([empty, *others]) if others else empty
         self._vehicles = len(kinds)
         self.reactions: Final[list[Reaction]] = []
@@ -242,7 +252,7 @@ class LiveSumo:
     @property
     def duration(self) -> float:
         """Last time of the traffic [s]; the first is 0."""
-        return (len(self.motion.table) - 1) / RATE
+        return (self.motion.samples - 1) / RATE
 
     @property
     def ahead(self) -> float:
@@ -259,7 +269,7 @@ class LiveSumo:
         Raises:
             ConfigError: The simulation was closed before that time.
         """
-        wanted = min((math.floor(until) + 1 + _FARTHEST) * RATE + 1, len(self.motion.table))
+        wanted = min((math.floor(until) + 1 + _FARTHEST) * RATE + 1, self.motion.samples)
         if wanted <= self._tracks.ready:
             return
         if not self._end.alive:
@@ -267,7 +277,7 @@ class LiveSumo:
                 f"traffic.source: the live traffic was closed at {self.ahead:g} s, but {until:g} s "
                 "was asked for"
             )
-        self._drive(min(wanted + self._tracks.ahead, len(self.motion.table)))
+        self._drive(min(wanted + self._tracks.ahead, self.motion.samples))
 
     def at(self, time: NDArray[np.float64], out: ActorState) -> None:
         """Write all actors of W worlds at the time of each world [s], shape (W,)."""
@@ -285,7 +295,7 @@ class LiveSumo:
         who, enters, ends = np.array(stays, np.int64).reshape(-1, 3).T.copy()
         # Half a sample longer: a time between two samples belongs to the nearer one.
         leaves = np.where(ends == ready, math.inf, (ends - 0.5) / RATE)
-        everything = ready == len(self.motion.table)
+        everything = ready == self.motion.samples
         known = math.inf if everything else float((ready - 1) // RATE - _FARTHEST)
         return Stays(who, enters / RATE, leaves, known)
 
@@ -300,10 +310,11 @@ class LiveSumo:
                 self._run.read_lamps(self.motion.lamps[tracks.driven])
             tracks.append()
         rows = tracks.smooth()
-        made, table = table_of(tracks.rows(rows), self._terrain), self.motion.table
+        made, track = table_of(tracks.rows(rows), self._terrain), self.motion.track
+        at = self.motion.places(np.arange(rows.start, rows.stop))[:, : self._vehicles]
         for name in OFTEN:
-            table[name][rows, : self._vehicles] = made[name]
-        on = table["footing"][rows, : self._vehicles]
+            track[name][at] = made[name]
+        on = track["footing"][at]
         for name in SELDOM:
             self.motion.footing[name][on] = made[name]
 

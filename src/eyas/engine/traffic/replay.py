@@ -33,20 +33,20 @@ class Replay:
         self.motion: Final = motion
         present = motion.footing["present"] > 0.0
         followed = range(self.actors) if targets is None else np.flatnonzero(targets).tolist()
-        on = motion.table["footing"]
-        stays = [(actor, *stay) for actor in followed for stay in runs(present[on[:, actor]])]
+        present = present[motion.track["footing"]][motion.places(np.arange(motion.samples))]
+        stays = [(actor, *stay) for actor in followed for stay in runs(present[:, actor])]
         who, enters, leaves = np.array(stays, np.int64).reshape(-1, 3).T.copy()
         self._stays = Stays(who, enters / motion.rate, (leaves - 1) / motion.rate, math.inf)
 
     @property
     def actors(self) -> int:
         """Number of actors."""
-        return int(self.motion.table.shape[1])
+        return len(self.motion.kind)
 
     @property
     def duration(self) -> float:
         """Last time of the traffic [s]; the first is 0."""
-        return (len(self.motion.table) - 1) / self.motion.rate
+        return (self.motion.samples - 1) / self.motion.rate
 
     def prepare(self, until: float) -> None:
         """Do nothing: everything is known."""

@@ -147,12 +147,14 @@ def gather_column(typing_context, array, index, column, width):
 
 
 @intrinsic
-def transposed(typing_context, array, index, first, width):
+def transposed(typing_context, array, index, first, width, guide):
     """Return `array[index, first + k]` for k from 0 to 7, of rows of `width` float32.
 
-    Eight loads and shuffles take the place of 64 loads; where all lanes want the same row, as many
-    do, each number is loaded into all of them. Where lanes are threads, each loads four numbers at
-    once: in arrays of whole rows, `width` and `first` must be multiples of four.
+    Eight loads and shuffles take the place of 64 loads; where all lanes of `guide` are the same, as
+    many are, so must those of `index` be, and each number is loaded into all of them. Loads that
+    follow each other have one guide: the processor then foresees all branches but the first. Where
+    lanes are threads, each loads four numbers at once: in arrays of whole rows, `width` and `first`
+    must be multiples of four.
     """
     result = types.UniTuple(_numbered(index, types.float32), 8)
 
@@ -179,7 +181,7 @@ def transposed(typing_context, array, index, first, width):
         if not isinstance(index, Lanes):
             return context.make_tuple(builder, result, numbers_of(places[0]))
         kind = ir_type(F4, threads=False)
-        with builder.if_else(_all_alike(builder, args[1])) as (alike, apart):
+        with builder.if_else(_all_alike(builder, args[4])) as (alike, apart):
             with alike:
                 broad = [_in_all(builder, number) for number in numbers_of(places[0])]
                 from_one = builder.block
@@ -195,7 +197,7 @@ def transposed(typing_context, array, index, first, width):
             values.append(value)
         return context.make_tuple(builder, result, values)
 
-    return result(array, index, first, width), generate
+    return result(array, index, first, width, guide), generate
 
 
 @intrinsic

@@ -212,7 +212,7 @@ def test_absent_actors_are_not_charted(assets_where):
 
 def test_a_motion_of_two_samples_is_enough(assets):
     motion = assets.traffic.motion
-    short = motion._replace(table=motion.table[:2])
+    short = motion.of(motion.table[:2])
     cameras = cameras_among(assets, np.zeros(1), np.random.default_rng(0))
     looks = looks_of(motion, 1)
     movers = VisibleActors(short, assets.rigs, looks, np.full(len(assets.rigs.casts), 1e6)).of(

@@ -11,6 +11,7 @@ from eyas.engine.render.kernels.sky.fog import HAZE_END
 from eyas.engine.render.kernels.sky.radiance import HILL_FARTHEST, HILL_TOP
 from eyas.engine.render.kernels.surface.texture import LAST_TEXEL
 from eyas.engine.render.pack.clusters import corners_of
+from eyas.engine.render.pack.triangles import materials_of
 from eyas.engine.render.textures.fields import SIZE, Field, blurred, fractal, source
 from eyas.engine.state.lighting import Horizon
 from eyas.lanes import exact
@@ -59,7 +60,7 @@ def far_ground(geometry: Geometry) -> NDArray[np.float64]:
     corner = corners_of(geometry.cluster)[:last, :, :2].astype(np.float64)
     one, two = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     area = np.maximum(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0], 0.0)
-    share = np.bincount(geometry.material[:last], area, len(geometry.layer))
+    share = np.bincount(materials_of(geometry.shading[:last]), area, len(geometry.layer))
     # The only texel of the last level is the mean of the texture.
     packed = geometry.texture[geometry.layer, LAST_TEXEL]
     root = np.stack([packed & 255, packed >> 8 & 255, packed >> 16 & 255], axis=1) / 255.0

@@ -20,6 +20,7 @@ from eyas.engine.render.kernels.visibility.clusters import CLUSTER
 from eyas.engine.render.kernels.visibility.fill import SPAN_ROWS
 from eyas.engine.render.kernels.visibility.triangles import TRIANGLE_ROWS
 from eyas.engine.render.pack.clusters import corners_of
+from eyas.engine.render.pack.triangles import materials_of
 from eyas.engine.state.mesh import Surface
 from eyas.lanes import PackedBundle, exact, thread_count
 from eyas.lanes.vector import WIDTH
@@ -86,7 +87,11 @@ def _bake(geometry: Geometry, sun: tuple[float, float, float], ground: float) ->
         rows, tile = _frame(casting, axes, texel)
     heights = np.zeros((int(tile.max()) + 1, TILE + 1, TILE + 1), np.uint16)
     _draw(geometry, ground + _FLAT, rows, tile, heights)
-    return ShadowMap(heights, tile, rows, texel)
+    # Many tiles show the same: nothing, or the flat roof of something large.
+    number: dict[bytes, int] = {}
+    kept = np.array([number.setdefault(each.tobytes(), len(number)) for each in heights], np.int32)
+    first = np.unique(kept, return_index=True)[1]
+    return ShadowMap(heights[first], kept[tile], rows, texel)
 
 
 def _frame(
@@ -162,7 +167,7 @@ def _draw(
     """Fill the tiles of a map with what reaches above z = `flat` [m]."""
     cards = _cards(geometry)
     solid = [
-        not cards[geometry.material[first:last]].any()
+        not cards[materials_of(geometry.shading[first:last])].any()
         for first, last in geometry.mesh_range[geometry.level_first[: geometry.part_first], :2]
     ]
     chunks, fixtures = len(geometry.chunk_range), len(geometry.fixture_prototype)
@@ -203,8 +208,9 @@ def _casters(geometry: Geometry) -> tuple[NDArray[np.generic], ...]:
     return (
         ranges,
         corners_of(geometry.cluster)[:last],
-        geometry.corner_uv[:last],
-        cards[geometry.material[:last]],
+        geometry.corner_uv,
+        geometry.uv_row,
+        cards[materials_of(geometry.shading[:last])],
         geometry.texture[np.flatnonzero(np.bincount(geometry.layer[cards > 0]))] >> 24,
         fixtures,
         geometry.fixture_prototype,

@@ -20,7 +20,7 @@ from eyas.engine.render.pack.boxes import (
 from eyas.engine.render.pack.clusters import ends_of
 from eyas.engine.render.pack.materials import material_table
 from eyas.engine.render.pack.pool import Pool
-from eyas.engine.render.pack.triangles import shading_rows
+from eyas.engine.render.pack.triangles import looks_of, shading_rows
 from eyas.engine.render.textures.mipmap import packed_layers
 from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.scene import ObjectClass, Scene
@@ -58,12 +58,14 @@ def build_geometry(
     names = sorted({material.texture for material in palette} | {"plain"})
     fixture_boxes = posed_boxes(box[prototype], pose)
     materials = material_table(scene, parts, palette, names)
-    own = materials.of(meshes["material"])
-    shading = shading_rows(meshes.pop("slopes"), meshes["object_id"], own)
+    triangles = (meshes.pop(name) for name in ("slopes", "object_id", "material"))
+    shading, bent = shading_rows(*triangles)
     ranges = meshes.pop("ranges")
     return Geometry(
         **meshes,
         shading=shading,
+        bent=bent,
+        look=looks_of(materials),
         object_class=np.append(scene.object_class, ObjectClass.SKY).astype(np.uint8),
         chunk_box=columns_of(chunk_box, GROUP),
         chunk_group_box=columns_of(group_boxes(chunk_box), CLUSTER),

@@ -1,7 +1,7 @@
 """Materials as the kernels read them: texture, tint, and what snow does on them."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ _MIDDLE = 0.3  # Height of a crown's middle between its lower end and its top: c
 
 @dataclass(frozen=True, slots=True)
 class MaterialTable:
-    """Materials, or those of each triangle; see the fields of `Geometry` with the same names."""
+    """Columns of `Geometry.look`."""
 
     layer: NDArray[np.int32]
     surface: NDArray[np.int32]
@@ -31,10 +31,6 @@ class MaterialTable:
     emission: NDArray[np.float32]
     snow_bed: NDArray[np.int32]
     crown_middle: NDArray[np.float32]
-
-    def of(self, index: NDArray[np.int32]) -> "MaterialTable":
-        """Return the rows of an index."""
-        return MaterialTable(*(getattr(self, array.name)[index] for array in fields(self)))
 
 
 def material_table(

@@ -1,5 +1,6 @@
 """Meshes packed one after the other, many at once."""
 
+import hashlib
 from collections import defaultdict
 from typing import Any
 
@@ -7,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.mesh.assembly import concatenate
-from eyas.engine.render.kernels.visibility.clusters import CLUSTER, UV_ROWS
+from eyas.engine.render.kernels.visibility.clusters import CLUSTER, LEAVES, UV_ROWS
 from eyas.engine.render.pack.clusters import (
     bounds_of,
     by_clusters,
@@ -36,10 +37,15 @@ class Pool:
         self.palette: dict[Material, int] = {}
         self._packed = defaultdict[str, list[NDArray[Any]]](list)
         self._places = np.zeros(3, np.int32)  # Of triangles, twice, and of bounds until now
+        self._leafy = 0  # Clusters with leaves until now
         self._waiting: list[tuple[Mesh, NDArray[np.int32], NDArray[np.float32]]] = []
         self._triangles = 0  # Of those that wait
         self._last = tuple[Material, ...](), np.zeros(0, np.int32)
+        self._numbers: list[int] = []  # Number of each mesh that was added among those kept
+        self._known: dict[bytes, int] = {}  # The same of a mesh's content
+        self._meshes = 0  # Number of those kept
         self.add(concatenate([]))  # so that there are arrays even without a mesh
+        self._numbers.clear()
 
     def add(
         self,
@@ -49,6 +55,13 @@ class Pool:
     ) -> None:
         """Append a mesh, with the object and the `Geometry.size` of each triangle."""
         count = len(mesh.triangles)
+        number = self._meshes
+        if objects is None:  # the same wheel or lamp in several things takes its place once
+            number = self._known.setdefault(_digest(mesh), number)
+        self._numbers.append(number)
+        if number < self._meshes:
+            return
+        self._meshes += 1
         objects = np.full(count, -1, np.int32) if objects is None else objects
         sizes = np.full(count, np.inf, np.float32) if sizes is None else sizes
         self._waiting.append((mesh, objects, sizes))
@@ -65,7 +78,9 @@ class Pool:
         if self._waiting:
             self._pack()
         made = {name: np.concatenate(self._packed.pop(name)) for name in [*self._packed]}
-        return made | {"ranges": made["ranges"][1:]}
+        nothing = np.zeros((1, UV_ROWS, CLUSTER), np.float32)
+        made["corner_uv"] = np.concatenate([nothing, made["corner_uv"]])
+        return made | {"ranges": made["ranges"][self._numbers]}
 
     def _pack(self) -> None:
         """Pack the meshes that wait."""
@@ -100,10 +115,13 @@ class Pool:
             np.cumsum(each) - each for each in (clusters_each, -(-clusters_each // CLUSTER))
         )
         ranges = np.column_stack([CLUSTER * first, CLUSTER * first + counts, row])
+        corner_uv = by_clusters(_filled(uvs.reshape(-1, UV_ROWS)[source], own))
+        leaves = (clusters[:, LEAVES] >= 0.0).any(axis=1)
         made = {
             "cluster": clusters,
             "bounds": bounds,
-            "corner_uv": by_clusters(_filled(uvs.reshape(-1, UV_ROWS)[source], own)),
+            "corner_uv": corner_uv[leaves],
+            "uv_row": np.where(leaves, np.cumsum(leaves) + self._leafy, 0).astype(np.int32),
             "slopes": _filled(slopes[source], own),
             "material": _filled(material[keep][source], own),
             "object_id": _filled(objects[source], own),
@@ -112,6 +130,7 @@ class Pool:
         for name, array in made.items():
             self._packed[name].append(array)
         self._places += np.array([len(source), len(source), len(bounds)], np.int32)
+        self._leafy += int(leaves.sum())
 
     def _looked_up(self, mesh: Mesh) -> NDArray[np.int32]:
         """Return the index of each material of a mesh in the palette."""
@@ -119,6 +138,14 @@ class Pool:
             index = [self.palette.setdefault(m, len(self.palette)) for m in mesh.palette]
             self._last = mesh.palette, np.array(index, np.int32)
         return self._last[1]
+
+
+def _digest(mesh: Mesh) -> bytes:
+    """Return a number for the content of a mesh."""
+    whole = hashlib.sha1(repr(mesh.palette).encode(), usedforsecurity=False)
+    for array in (mesh.positions, mesh.normals, mesh.uvs, mesh.triangles, mesh.materials):
+        whole.update(np.ascontiguousarray(array).view(np.uint8).data)
+    return whole.digest()
 
 
 def _filled(rows: NDArray[Any], own: NDArray[np.bool_]) -> NDArray[Any]:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.kernels.bundles import SHADING_COLUMNS
+from eyas.engine.render.kernels.bundles import LOOK_COLUMNS, SHADING_COLUMNS
 from eyas.engine.render.pack.materials import MaterialTable
 from eyas.lanes import exact
 
@@ -70,21 +70,34 @@ def gradients(
 def shading_rows(
     slopes: NDArray[np.float32],  # From `gradients`
     objects: NDArray[np.int32],  # Object ids, shape (T,)
-    materials: MaterialTable,  # Of each triangle
-) -> NDArray[np.float32]:
-    """Return `Geometry.shading`: all that shading needs of a triangle, in two cache lines."""
+    materials: NDArray[np.int32],  # Shape (T,)
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Return `Geometry.shading`, one cache line for each triangle, and `Geometry.bent`."""
     rows = np.empty((len(slopes), SHADING_COLUMNS), np.float32)
     whole = rows.view(np.int32)
     rows[:, :14] = slopes[:, :14]
     rows[:, 14] = slopes[:, 23]
-    whole[:, 15] = materials.layer
-    whole[:, 16] = materials.surface | (materials.snow_bed << 8)
-    rows[:, 17:20] = materials.tint
-    rows[:, 20] = materials.emission
-    rows[:, 21] = materials.crown_middle
-    whole[:, 22] = objects
-    rows[:, 23:] = slopes[:, 14:23]
+    whole[:, 15] = (objects << 16) | materials
+    bent = np.flatnonzero(slopes[:, 23] < 0.0)
+    whole[bent, 11] = np.arange(len(bent))
+    return rows, np.concatenate([slopes[bent, 14:23], slopes[bent, 11:14]], axis=1)
+
+
+def looks_of(materials: MaterialTable) -> NDArray[np.float32]:
+    """Return `Geometry.look`."""
+    rows = np.zeros((len(materials.layer), LOOK_COLUMNS), np.float32)
+    whole = rows.view(np.int32)
+    whole[:, 0] = materials.layer
+    whole[:, 1] = materials.surface | (materials.snow_bed << 8)
+    rows[:, 2:5] = materials.tint
+    rows[:, 5] = materials.emission
+    rows[:, 6] = materials.crown_middle
     return rows
+
+
+def materials_of(shading: NDArray[np.float32]) -> NDArray[np.int32]:
+    """Return the material of each triangle from `Geometry.shading`, shape (T,)."""
+    return shading.view(np.int32)[:, 15] & np.int32(0xFFFF)
 
 
 def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:

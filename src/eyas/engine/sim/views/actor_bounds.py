@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.state.motion import Motion
+from eyas.engine.traffic.interpolation import place_of
 from eyas.lanes import compiled, kernel
 from eyas.lanes.vector import WIDTH
 
@@ -28,7 +29,7 @@ class ActorBounds(NamedTuple):
 def bounds_of(motion: Motion, actor: NDArray[np.int64]) -> ActorBounds:
     """Return bounds of actors of which no row is made."""
     samples = max(round(motion.rate), 1)
-    rows = max(-(-(len(motion.table) - 1) // samples), 1)
+    rows = max(-(-(motion.samples - 1) // samples), 1)
     # Not filled: the system gives memory only to rows that are written.
     sphere = np.empty((rows, 4, len(actor) + WIDTH), np.float32)
     return ActorBounds(actor, np.zeros(rows, np.bool_), np.array([samples], np.int64), sphere)
@@ -42,7 +43,7 @@ def made_row(bounds: ActorBounds, motion: Motion, sample: int) -> int:
         for column in range(bounds.sphere.shape[2]):
             bounds.sphere[row, 3, column] = NOWHERE
         first = row * bounds.samples[0]
-        last = min(first + bounds.samples[0], motion.table.shape[0] - 1)
+        last = min(first + bounds.samples[0], motion.samples - 1)
         for column in range(bounds.actor.shape[0]):
             _enclose(bounds, motion, row, column, first, last)
         bounds.ready[row] = True
@@ -65,7 +66,8 @@ def _enclose(
     low_x, low_y, low_z, high_x, high_y, high_z = 1e30, 1e30, 1e30, -1e30, -1e30, -1e30
     slope = 0.0
     for k in range(first, last):
-        a, b = motion.table[k, actor], motion.table[k + 1, actor]
+        a = motion.track[place_of(motion, k, actor)]
+        b = motion.track[place_of(motion, k + 1, actor)]
         on_a, on_b = motion.footing[a.footing], motion.footing[b.footing]
         if on_a.present <= 0.0 and on_b.present <= 0.0:
             continue

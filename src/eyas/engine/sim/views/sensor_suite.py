@@ -104,19 +104,26 @@ class SensorSuite:
         """
         sensors: dict[str, _Sensor | None] = {
             "contacts": self._contacts,
-            "lidar": self.lidar,
             "readings": self.readings,
             "grain": self.grain,
             "events": self.events,
         }
-        for name, sensor in sensors.items():
-            if sensor is not None:
-                for tracker in trackers:
-                    sensor.begin(tracker, key_of(tracker).stream(name))
+        on = [(name, sensor) for name, sensor in sensors.items() if sensor is not None]
+        optics = self.optics, *self.further
         for tracker in trackers:
-            for optics in (self.optics, *self.further):
-                optics.begin(tracker, key_of(tracker).stream)
+            key = key_of(tracker)
+            if self.lidar is not None:
+                self.lidar.begin(tracker, key)
+            for name, sensor in on:
+                sensor.begin(tracker, key.stream(name))
+            for camera in optics:
+                camera.begin(tracker, key.stream)
         self.advance()
+
+    def settle(self) -> None:
+        """Sense what waits until it is asked for."""
+        if self.lidar is not None:
+            self.lidar.settle()
 
     def renew(self) -> None:
         """Begin a command."""

@@ -10,7 +10,14 @@ themselves. Numbers of a bundle are float32 if their names are those of light, e
 """
 
 from eyas.engine.render.kernels.bundles.band import Band
-from eyas.engine.render.kernels.bundles.geometry import GROUP, SHADING_COLUMNS, Geometry, Movers
+from eyas.engine.render.kernels.bundles.geometry import (
+    BENT_COLUMNS,
+    GROUP,
+    LOOK_COLUMNS,
+    SHADING_COLUMNS,
+    Geometry,
+    Movers,
+)
 from eyas.engine.render.kernels.bundles.lens import (
     DARK,
     ELSEWHERE,
@@ -41,11 +48,13 @@ from eyas.engine.render.kernels.bundles.view import (
 from eyas.engine.render.kernels.bundles.work import Canvas, Job, Output, Scratch, Task
 
 __all__ = [
+    "BENT_COLUMNS",
     "DARK",
     "ELSEWHERE",
     "FACES",
     "GROUP",
     "LENS_TILE",
+    "LOOK_COLUMNS",
     "NEAR",
     "SHADING_COLUMNS",
     "TILE",

@@ -7,8 +7,12 @@ from numpy.typing import NDArray
 
 GROUP = 16  # Chunks, or fixtures, that are culled together first
 
-SHADING_COLUMNS = 32
-"""Columns of `Geometry.shading`: a row fills two lines of a cache of 64 bytes each."""
+SHADING_COLUMNS = 16
+"""Columns of `Geometry.shading`: a row fills a line of a cache of 64 bytes."""
+
+BENT_COLUMNS = 12  # Columns of `Geometry.bent`
+
+LOOK_COLUMNS = 8  # Columns of `Geometry.look`
 
 
 class Geometry(NamedTuple):
@@ -23,15 +27,20 @@ class Geometry(NamedTuple):
     shape (., 14, 8)."""
     corner_uv: NDArray[np.float32]
     """Texture coordinates u and v of corner a, of b and of c [tiles] of the eight triangles in each
-    cluster, shape (T / 8, 6, 8)."""
+    cluster with leaves, whose holes they place, after a row of zeros, shape (., 6, 8)."""
+    uv_row: NDArray[np.int32]  # Row of `corner_uv` of each cluster, 0: no leaves, shape (T / 8,)
     shading: NDArray[np.float32]
     """Data of each triangle for shading in one place: columns 0 to 13 of `gradients` in
     `eyas.engine.render.pack.triangles`; tiles in a metre, negative where the normal is not the same
-    all over; texture; surface, and bed of snow times 256; tint; emission; middle of the crown;
-    object id; gradients of the normal. Whole numbers lie there as int32. Shape (T,
+    all over: there the first component of the normal gives way to a row of `bent`; material, and
+    object id times 65,536, -1 for prototypes. Whole numbers lie there as int32. Shape (T,
     SHADING_COLUMNS)."""
-    material: NDArray[np.int32]  # Material of each triangle, shape (T,)
-    object_id: NDArray[np.int32]  # Object id of each static triangle, -1 for prototypes, shape (T,)
+    bent: NDArray[np.float32]
+    """Gradients of the normal where it is not the same all over, and the normal at the corner,
+    shape (., BENT_COLUMNS)."""
+    look: NDArray[np.float32]
+    """What shading needs of each material: texture; surface, and bed of snow times 256; tint;
+    emission; middle of the crown; nothing. Shape (., LOOK_COLUMNS)."""
     object_class: NDArray[np.uint8]
     """`eyas.engine.state.scene.ObjectClass` of each object of the scene, then of the sky,
     shape (O + 1,)."""

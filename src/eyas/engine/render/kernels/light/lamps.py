@@ -74,7 +74,8 @@ def _street_light(
         lit = inside & (which >= i4(0))
         if not any_of(lit):
             break  # lists end with the first empty place
-        lamp = transposed(lamps, to_i4(greater(which, i4(0))), 0, 8)
+        at = to_i4(greater(which, i4(0)))
+        lamp = transposed(lamps, at, 0, 8, at)
         dx, dy, dz = lamp[0] - x, lamp[1] - y, lamp[2] - z
         lean = normal[0] * dx + normal[1] * dy + normal[2] * dz
         square = dx * dx + dy * dy + dz * dz + f4(0.25)
@@ -116,7 +117,8 @@ def lamp_gloss(
             lit = inside & (which >= i4(0))
             if not any_of(lit):
                 break  # lists end with the first empty place
-            lamp = transposed(lamps, to_i4(greater(which, i4(0))), 0, 8)
+            at = to_i4(greater(which, i4(0)))
+            lamp = transposed(lamps, at, 0, 8, at)
             dx, dy, dz = lamp[0] - x, lamp[1] - y, lamp[2] - z
             square = dx * dx + dy * dy + dz * dz + f4(0.25)
             inverse = one / root(square)

@@ -17,6 +17,7 @@ from eyas.engine.render.kernels.visibility.clusters import (
 from eyas.engine.render.kernels.visibility.fill import fill
 from eyas.engine.render.kernels.visibility.holes import LEVELS, holes_of, no_holes
 from eyas.engine.render.kernels.visibility.key import distance_inverse
+from eyas.engine.render.kernels.visibility.leaves import material_of
 from eyas.engine.render.kernels.visibility.transform import object_projection
 from eyas.engine.render.kernels.visibility.triangles import Corners, set_up, set_up_leaves
 from eyas.lanes import kernel, parallel
@@ -183,12 +184,13 @@ def _draw(
         real &= _top(geometry.cluster, cluster) > f4(flat)
         left = bits_of(set_up(corners, real, both_sides, 0.0, size, size, 0.0, prepared))
         if left != 0 and any_of(has_leaves(geometry.cluster, cluster)):
-            set_up_leaves(corners, geometry.corner_uv, cluster * UV_ROWS * CLUSTER, prepared)
+            at = geometry.uv_row[cluster] * UV_ROWS * CLUSTER
+            set_up_leaves(corners, geometry.corner_uv, at, prepared)
         while left != 0:
             number = first_bit(left)
             left &= left - 1
             triangle = first + number
-            material = geometry.material[triangle]
+            material = material_of(geometry, triangle)
             drawn, holes = bake.cards[material], no_holes(geometry.texture)
             if drawn != 0:
                 # A card has four triangles, or two. Counted in its mesh, so that the shade of a

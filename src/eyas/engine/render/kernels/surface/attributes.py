@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.kernels.bundles import SHADING_COLUMNS, Band
+from eyas.engine.render.kernels.bundles import BENT_COLUMNS, LOOK_COLUMNS, SHADING_COLUMNS, Band
 from eyas.engine.render.kernels.colours import Vector
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.engine.render.kernels.wind import sways
@@ -134,12 +134,16 @@ def attributes_of(
     point: Vector,  # The point [m]
 ) -> Attributes:
     """Return what a triangle has at a world point [m]."""
-    shading, moved = band.geometry.shading, row >= 0
-    x0, y0, z0, u_x, u_y, u_z, u0, v_x = transposed(shading, triangle, 0, SHADING_COLUMNS)
-    v_y, v_z, v0, nx, ny, nz, density, layer = transposed(shading, triangle, 8, SHADING_COLUMNS)
-    kind, red, green, blue, emission, crown, building, nx_x = transposed(
-        shading, triangle, 16, SHADING_COLUMNS
+    geometry, moved = band.geometry, row >= 0
+    shading = geometry.shading
+    v_y, v_z, v0, nx, ny, nz, density, word = transposed(
+        shading, triangle, 8, SHADING_COLUMNS, triangle
     )
+    material = to_i4(bit_pattern(word) & i4(0xFFFF))
+    layer, kind, red, green, blue, emission, crown, _ = transposed(
+        geometry.look, material, 0, LOOK_COLUMNS, triangle
+    )
+    x0, y0, z0, u_x, u_y, u_z, u0, v_x = transposed(shading, triangle, 0, SHADING_COLUMNS, triangle)
     own = point
     if moved:
         own = _to_own(instance_frame(band, row), point)
@@ -147,12 +151,14 @@ def attributes_of(
     u, v = u0 + u_x * x + u_y * y + u_z * z, v0 + v_x * x + v_y * y + v_z * z
     bent = density < f4(0.0)
     if any_of(bent):
-        nx_y, nx_z, ny_x, ny_y, ny_z, nz_x, nz_y, nz_z = transposed(
-            shading, triangle, 24, SHADING_COLUMNS
+        at = select(bent, bit_pattern(nx), i4(0))
+        nx_x, nx_y, nx_z, ny_x, ny_y, ny_z, nz_x, nz_y = transposed(
+            geometry.bent, at, 0, BENT_COLUMNS, triangle
         )
-        nx += nx_x * x + nx_y * y + nx_z * z
-        ny += ny_x * x + ny_y * y + ny_z * z
-        nz += nz_x * x + nz_y * y + nz_z * z
+        _, _, _, _, nz_z, mx, my, mz = transposed(geometry.bent, at, 4, BENT_COLUMNS, triangle)
+        nx = select(bent, mx + (nx_x * x + nx_y * y + nx_z * z), nx)
+        ny = select(bent, my + (ny_x * x + ny_y * y + ny_z * z), ny)
+        nz = select(bent, mz + (nz_x * x + nz_y * y + nz_z * z), nz)
     normal, density = (nx, ny, nz), magnitude(density)
     if moved:
         frame = instance_frame(band, row)
@@ -163,8 +169,8 @@ def attributes_of(
         scale = f4(1.0) / root(nx * nx + ny * ny + nz * nz + f4(1e-12))
         scale = select(bent | like(bent, moved), scale, f4(1.0))
         normal = (nx * scale, ny * scale, nz * scale)
-    kinds = bit_pattern(kind)
+    kinds, building = bit_pattern(kind), to_i4(bit_pattern(word) >> i4(16))
     return Attributes(
         u, v, (u_x, u_y, u_z), normal, own, density, bit_pattern(layer), to_i4(kinds & i4(255)),
-        to_i4(kinds >> i4(8)), (red, green, blue), emission, crown, bit_pattern(building),
+        to_i4(kinds >> i4(8)), (red, green, blue), emission, crown, building,
     )  # fmt: skip

@@ -141,7 +141,7 @@ def _slots_seen(band: Band, sides: Sides, first: int, last: int) -> int:
     wanted = inside & (part >= i4(0))
     prototype = greater(part, i4(0)) + i4(geometry.part_first)
     poses = movers.pose[world]
-    xx, xy, xz, x, yx, yy, yz, y = transposed(poses, slot, 0, _POSE)
+    xx, xy, xz, x, yx, yy, yz, y = transposed(poses, slot, 0, _POSE, slot)
     zx = gather_column(poses, slot, 8, _POSE)
     zy = gather_column(poses, slot, 9, _POSE)
     zz = gather_column(poses, slot, 10, _POSE)

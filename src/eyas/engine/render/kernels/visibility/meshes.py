@@ -123,7 +123,9 @@ def draw_cluster(
     if band.until == VERTICES:
         return
     if drawn != 0 and any_of(leafy):
-        set_up_leaves(corners, geometry.corner_uv, UV_ROWS * CLUSTER * cluster, triangle)
+        set_up_leaves(
+            corners, geometry.corner_uv, UV_ROWS * CLUSTER * geometry.uv_row[cluster], triangle
+        )
     _draw_triangles(band, key, cluster, drawn, bits_of(cut), screen, focal, tag)
 
 
@@ -166,7 +168,6 @@ def _draw_triangles(
         holes = holes_of(geometry.texture, leaves_of(geometry, at, triangle, column, focal))
         # It will be shaded, unless something nearer is drawn over it.
         prefetch(geometry.shading, at * SHADING_COLUMNS)
-        prefetch(geometry.shading, at * SHADING_COLUMNS + SHADING_COLUMNS // 2)
         fill(triangle, column, view.top, view.width, key, tag + at, holes, band.span)
 
 
@@ -179,7 +180,7 @@ def _cut_triangle(
     """
     geometry, view, triangle, polygon = band.geometry, band.camera, band.triangle, band.polygon
     pieces = clip_near(
-        screen, geometry.cluster[cluster], geometry.corner_uv[cluster], number,
+        screen, geometry.cluster[cluster], geometry.corner_uv[geometry.uv_row[cluster]], number,
         0.5 * view.width, 0.5 * view.height, polygon,
     )  # fmt: skip
     corners, numbers = load_corners(polygon), lane_numbers()

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.kernels.bundles import Band
-from eyas.engine.render.kernels.scalars import f4, i8
+from eyas.engine.render.kernels.bundles import SHADING_COLUMNS, Band
+from eyas.engine.render.kernels.scalars import f4, i4, i8
 from eyas.engine.render.kernels.visibility.key import (
     distance_inverse,
     drawn_of,
@@ -13,7 +13,7 @@ from eyas.engine.render.kernels.visibility.key import (
 )
 from eyas.engine.state.scene import ACTOR_OBJECT, SKY_OBJECT
 from eyas.lanes import kernel
-from eyas.lanes.vector import WIDTH, load, store
+from eyas.lanes.vector import WIDTH, bit_pattern, load, store
 
 
 @kernel
@@ -43,7 +43,7 @@ def object_of(band: Band, key: int) -> int:
     tag = tag_of(key)
     row = drawn_of(tag)
     if row < 0:
-        return i8(geometry.object_id[triangle_of(tag)])
+        return i8(bit_pattern(geometry.shading[triangle_of(tag), SHADING_COLUMNS - 1]) >> i4(16))
     instance, fixtures = drawn[row, 1], len(geometry.fixture_object)
     if instance < fixtures:
         return i8(geometry.fixture_object[instance])
