@@ -43,7 +43,8 @@ def object_of(band: Band, key: int) -> int:
     tag = tag_of(key)
     row = drawn_of(tag)
     if row < 0:
-        return i8(bit_pattern(geometry.shading[triangle_of(tag), SHADING_COLUMNS - 1]) >> i4(16))
+        word = bit_pattern(geometry.shading[triangle_of(tag), SHADING_COLUMNS - 1])
+        return i8(word >> i4(16)) & i8(0xFFFF)  # ids of a large city fill all sixteen bits
     instance, fixtures = drawn[row, 1], len(geometry.fixture_object)
     if instance < fixtures:
         return i8(geometry.fixture_object[instance])
