@@ -99,13 +99,8 @@ def _body(frame: Frame, shape: CarShape, detail: _Detail, stations: NDArray[np.f
     if 3 not in detail.points:
         _lamp_panels(shell, shape, every[1], every[0])
         _lamp_panels(shell, shape, every[-2], every[-1])
-    for material, place, (right, left), (low, high) in shape.fittings if 3 in detail.points else ():
-        corners = [
-            (place, left, low),
-            (place, right, low),
-            (place, right, high),
-            (place, left, high),
-        ]
+    for material, x, (right, left), (foot, top) in shape.fittings if 3 in detail.points else ():
+        corners = [(x, left, foot), (x, right, foot), (x, right, top), (x, left, top)]
         shell.quads(corners, material, both_sides=True)
     if detail.arches:
         add_trimmings(shell, frame, shape)
