@@ -20,6 +20,7 @@ PROTOCOLS: Registry[Protocol] = Registry(
         "unseen": f"{_ROOM}.published:UNSEEN",
         "corrupted": f"{_ROOM}.corrupted:CORRUPTED",
         "long": f"{_ROOM}.lasting:LONG",
+        "long-10": f"{_ROOM}.lasting:LONG_TEN",
         "gimbal": f"{_ROOM}.lasting:GIMBAL",
         "search": f"{_ROOM}.lasting:SEARCH",
         "distractor": f"{_ROOM}.lasting:DISTRACTOR",

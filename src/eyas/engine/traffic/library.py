@@ -56,8 +56,8 @@ STANDARD_DURATION = 1260.0  # Default length of a recording: 21 minutes [s]
 TEST_TRAFFIC = tuple(TEST_SEEDS + number for number in (1, 2, 3))
 """Seeds of the recordings that ship for tests, see `TEST_SEEDS`."""
 
-TEST_DURATION = 300.0
-"""Least length of a recording with such a seed: their episodes are short, but many [s]."""
+TEST_DURATION = 600.0
+"""Least length of a recording with such a seed: that of the longest episodes, `long-10` [s]."""
 
 
 def find_file(

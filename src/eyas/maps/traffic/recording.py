@@ -250,12 +250,12 @@ def _shipped_recordings(recipe: MapRecipe) -> Iterator[tuple[str, int, TrafficCo
         own = config.model_copy(update={"drivers": drivers})
         yield drivers_file(drivers), 0, own, STANDARD_DURATION
         tested = own.model_copy(update={"seed": TEST_TRAFFIC[0]})
-        yield drivers_file(drivers, TEST_TRAFFIC[0]), 0, tested, 2.0 * TEST_DURATION
+        yield drivers_file(drivers, TEST_TRAFFIC[0]), 0, tested, TEST_DURATION
     for seed in TEST_TRAFFIC if recipe.name in _TESTED else ():
-        yield town_traffic_file(0, seed), 0, TrafficConfig(seed=seed), 2.0 * TEST_DURATION
+        yield town_traffic_file(0, seed), 0, TrafficConfig(seed=seed), TEST_DURATION
     for town in TEST_TOWNS if recipe.name in _WITH_TOWNS else ():
         seed = TEST_TRAFFIC[0]
-        yield town_traffic_file(town, seed), town, TrafficConfig(seed=seed), TEST_DURATION
+        yield town_traffic_file(town, seed), town, TrafficConfig(seed=seed), 0.5 * TEST_DURATION
 
 
 def _report(path: Path, what: str) -> None:
