@@ -39,7 +39,8 @@ _Maps = Annotated[
     ),
 ]
 _Weathers = Annotated[
-    list[str] | None, typer.Option("--weather", help=f"By default the protocol's, mostly day; {SEVERAL}.")
+    list[str] | None,
+    typer.Option("--weather", help=f"By default the protocol's, mostly day; {SEVERAL}."),
 ]
 _Targets = Annotated[
     list[str] | None,

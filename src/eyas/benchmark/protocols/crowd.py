@@ -14,6 +14,7 @@ from eyas.benchmark.flight.scenario import Scenario
 from eyas.benchmark.protocols.envelope import Envelope
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
 from eyas.engine.policies.sight import nearest_to_middle
+from eyas.engine.traffic.library import TEST_TRAFFIC
 
 _HEIGHT: Final = 12.0
 """Height of the drone above the ground [m]: people are then 5 of 84 pixels wide, and 2 from 22
@@ -80,6 +81,7 @@ CROWD = Protocol(
     rank="kept_share",
     alike=True,
     choose=in_company,
+    recordings=TEST_TRAFFIC,
     scenario=CrowdScenario,
     envelope=Envelope(lowest=8.0, highest=15.0),
 )

@@ -27,6 +27,7 @@ PROTOCOLS: Registry[Protocol] = Registry(
         "flown": f"{_ROOM}.flown:FLOWN",
         "recover": f"{_ROOM}.recover:RECOVER",
         "recover-camera": f"{_ROOM}.recover:RECOVER_CAMERA",
+        "recover-wide": f"{_ROOM}.recover:RECOVER_WIDE",
         "evade": f"{_ROOM}.evade:EVADE",
         "referring": f"{_ROOM}.referring:REFERRING",
         "crowd": f"{_ROOM}.crowd:CROWD",

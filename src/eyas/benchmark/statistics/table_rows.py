@@ -93,12 +93,18 @@ class TableRow(NamedTuple):
 
 
 def clusters_in(records: Sequence[EpisodeRecord]) -> Clusters:
-    """Return which records are one observation: those of one seed.
+    """Return which records are one observation: those of one seed, or of one site.
 
     They have the same traffic and start in every weather and with every version, so that a lucky
-    seed raises all of them.
+    seed raises all of them; at one site, all targets vanish and come out at the same places.
     """
-    return clusters_of([each.seed for each in records], [each.direction for each in records])
+    sites = [each.variant.partition("@")[2] for each in records]
+    keys = [
+        (each.map, site) if site else each.seed for each, site in zip(records, sites, strict=True)
+    ]
+    return clusters_of(
+        keys, [0 if site else each.direction for each, site in zip(records, sites, strict=True)]
+    )
 
 
 def thirds(records: Sequence[EpisodeRecord]) -> list[str]:

@@ -47,6 +47,7 @@ DENSE_VEHICLES = 320
 m now and then (with 160, never), and citystreet, which has room for 399, still flows."""
 
 DENSE_DURATION = 300.0  # Length of these: as many vehicle hours as in the others [s]
+DENSE_TEST_DURATION = 80.0  # Length of those for tests, whose episodes take 20 s [s]
 EVADING_MIX = Mix(passenger=0.75, bus=0.15, truck=0.1)
 """Classes of vehicles in the shipped recordings of drivers who evade: no trailers, whose tails
 swing into cars that turn round beside them."""
