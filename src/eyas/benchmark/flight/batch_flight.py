@@ -19,6 +19,7 @@ from eyas.benchmark.records.record import EpisodeRecord
 from eyas.engine.core.errors import ActionError
 from eyas.engine.envs.actions import command_width, make_actions
 from eyas.engine.policies.policy import Decision, Failure, Policy, PolicyInput, Start
+from eyas.engine.policies.steering import PERIOD
 
 _PERIOD = 0.128  # Time between two looks [s]
 
@@ -148,7 +149,9 @@ class BatchFlight:
         if self._radio is not None and decision.messages is not None:
             self._radio.say(deciding, decision.messages)
         self._take(decision.actions, deciding)
-        repeat = max(self._policy.env.action_repeat, self._control_steps(self._delay.period))
+        # Policies count control steps of 8 ms, whichever the protocol has.
+        held = self._policy.env.action_repeat * PERIOD
+        repeat = max(map(self._control_steps, (PERIOD, held, self._delay.period)))
         for row in np.flatnonzero(deciding & self._active).tolist():
             late = self._control_steps(self._delay.next(row, taken))
             self._effective[row] = step + late

@@ -85,7 +85,6 @@ Floats = NDArray[np.float64]
 
 LOOK = 4  # Control steps between two counts of the target's pixels
 TRACE = 20  # Control steps between two points of a trace
-TRACE_PERIOD = 0.16  # Time between two points, with control steps of 8 ms [s]
 
 _PUBLISHED_ACTIONS = 305, 363
 """Fewest and most actions that the original's client makes in 1,500 physics steps."""
