@@ -77,13 +77,16 @@ class BatchFlight:
         seeds = np.array([episode.seed for episode in self._episodes])
         clear = clear_shares(self._episodes, self._protocol)
         self._delay.begin(seeds.tolist())
-        words = self._scenario.instruction()
+        self._told = words = self._scenario.instruction()
         self._batch.tell(words)
         start = Start(seeds, self._boxes, words, self._batch.roads, self._batch.is_open)
         self._guarded(lambda: self._policy.begin(start))
         told = np.zeros(len(seeds), np.bool_)
         for step in range(self._protocol.steps):
             self._batch.covered[:] = self._scenario.covered(step)
+            if (new := self._scenario.new_instruction(step)) is not None:
+                self._batch.tell(new)
+                self._told = new
             self._answer(step)  # before the next look, whose answer takes this one's place
             self._decide(step)
             self._answer(step)
@@ -136,6 +139,7 @@ class BatchFlight:
             covered=batch.covered,
             heard=heard,
             clock=step * self._protocol.period,
+            told=self._told,
         )
         begun = time.perf_counter()
         decision = self._guarded(lambda: self._policy.act(sight))

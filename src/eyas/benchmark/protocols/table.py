@@ -30,6 +30,7 @@ PROTOCOLS: Registry[Protocol] = Registry(
         "recover-wide": f"{_ROOM}.recover:RECOVER_WIDE",
         "evade": f"{_ROOM}.evade:EVADE",
         "referring": f"{_ROOM}.referring:REFERRING",
+        "mission": f"{_ROOM}.mission:MISSION",
         "crowd": f"{_ROOM}.crowd:CROWD",
         "pair": f"{_ROOM}.team:PAIR",
         "team": f"{_ROOM}.team:TEAM",
