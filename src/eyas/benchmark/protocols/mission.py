@@ -55,8 +55,8 @@ class MissionScenario(ReferringScenario):
         self._target = [self._starts[row].actor for row in range(batch.count)]
         self._renamed = np.zeros(batch.count, np.bool_)
         self._begun = batch.snapshot().trackers.position.copy()
-        self._home = np.zeros(batch.count, np.bool_)
-        self._wanted = np.full(self._nearest.shape, -1)
+        self._home = np.zeros(self._nearest.shape, np.bool_)
+        self._wanted = np.full(self._nearest.shape, -2)  # -1 is who follows nobody
         self._clear = [group.simulation.snapshot.light.fog_density.copy() for group in batch.groups]
 
     def covered(self, step: int) -> NDArray[np.bool_]:
@@ -91,7 +91,7 @@ class MissionScenario(ReferringScenario):
             self._wanted[:, step // LOOK] = self._target
             place = self._batch.snapshot().trackers.position
             away = np.square(place - self._begun)[:, :2].sum(axis=1)
-            self._home = active & (away <= _NEAR * _NEAR)
+            self._home[:, step // LOOK] = active & (away <= _NEAR * _NEAR)
 
     def figures(self, row: int) -> dict[str, float | None]:
         """Return the share of stages that are passed in a row, and which these are."""
@@ -99,8 +99,8 @@ class MissionScenario(ReferringScenario):
         passed, figures = True, dict[str, float | None]()
         for name, end in STAGES.items():
             last = round(end / self._look)
-            looks = followed[last - round(_JUDGED / self._look) : last]
-            own = bool(self._home[row]) if name == "home" else bool(looks.mean() >= 0.5)
+            looks = (self._home[row] if name == "home" else followed)[:last]
+            own = bool(looks[-round(_JUDGED / self._look) :].mean() >= 0.5)
             passed &= own or (name == "changed" and not self._renamed[row])
             figures[name] = float(passed)
         return {"score": float(np.mean([*figures.values()])), **figures}

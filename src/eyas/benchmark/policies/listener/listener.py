@@ -20,7 +20,7 @@ from eyas.benchmark.policies.tracker.metadata import TRACKER, env_as_trained
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
 from eyas.benchmark.policies.tracker.steering import Steering, turned
 from eyas.engine.core.config import validated
-from eyas.engine.policies.policy import Decision, Instruction, PolicyInput, Start
+from eyas.engine.policies.policy import COME_BACK, Decision, Instruction, PolicyInput, Start
 from eyas.engine.targets.grammar.attributes import claim_of
 from eyas.engine.targets.grammar.claims import Claim
 
