@@ -144,7 +144,7 @@ _BY_LENGTH = ("recovered", "recovered_2s", "recovered_5s", "recovered_10s", "rec
 _SEERS = ("hover", "sighted", "constant-velocity")
 _SHORT = (*_SEERS, "fast", "eyas")
 _KEPT = ("kept", "tsr", "losses_per_hour", "found_again")
-_ENDS = (
+_ENDS: tuple[tuple[str, str, tuple[str, ...], tuple[str, ...]], ...] = (
     ("long-10", "lasting", ("hover", "constant-velocity", "sighted", "fast", "eyas"), _KEPT),
     ("gimbal", "lasting", ("hover", "gimbal-servo", "sighted", "eyas"), _KEPT),
     (
@@ -266,8 +266,8 @@ def _long_flights() -> Iterator[Table]:
         seeds = FLOWN_SETS if name == "recover" else FLOWN_SETS[:1]
         rows += _flown(name, ("eyas",), seeds=seeds)
         yield Table(name, f"protocols/{page}.md", f"`{name}`", columns, rows)
-    for name, page, policies, columns in _ENDS:
-        yield Table(name, f"protocols/{page}.md", f"`{name}`", columns, _flown(name, policies))
+    for own, where, flyers, figures in _ENDS:
+        yield Table(own, f"protocols/{where}.md", f"`{own}`", figures, _flown(own, flyers))
     yield Table(
         "flown",
         "protocols/flown.md",
