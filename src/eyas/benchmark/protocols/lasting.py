@@ -21,8 +21,8 @@ LONG = Protocol(
 
 LONG_TEN = LONG.like(
     "long-10",
-    "590 s: losses in ten minutes, on six maps in four weathers by day and night",
-    {"done": {"total_steps": 295_000}, "control": {"frequency": 31.25}},
+    "589 s: losses in ten minutes, on six maps in four weathers by day and night",
+    {"done": {"total_steps": 294_400}, "control": {"frequency": 31.25}},
     episodes=1,
     maps=("citystreet", "downtown", "village", "lake", "desert", "farmland"),
     weathers=("day", "night", "foggy", "snow"),
