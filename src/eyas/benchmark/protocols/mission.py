@@ -145,7 +145,7 @@ MISSION = REFERRING.like(
         "control": {"frequency": 31.25},
         "done": {"total_steps": 150_000},
     },
-    episodes=25,
+    episodes=48,
     maps=("citystreet", "downtown"),
     columns=("score", *STAGES, "tsr"),
     rank="score",
