@@ -9,6 +9,7 @@ from eyas.benchmark.episodes.episode_batch import EpisodeBatch
 from eyas.benchmark.episodes.from_above import FromAbove
 from eyas.benchmark.episodes.loss_sites import kind_of, losses_at_sites
 from eyas.benchmark.flight.batch_flight import BatchFlight
+from eyas.benchmark.flight.meter import inside_things
 from eyas.benchmark.plan.latency import delay_from
 from eyas.benchmark.plan.plan import EvaluationPlan
 from eyas.benchmark.policies.table import open_policy
@@ -181,3 +182,20 @@ def test_words_change_in_flight_and_weather_turns(mission):
     assert (light.sun < 0.5).all()
     assert scenario.covered(round(77.0 / MISSION.period)).all()
     assert not scenario.covered(round(81.0 / MISSION.period)).any()
+
+
+@pytest.mark.slow
+def test_a_drone_in_a_crown_or_a_roof_is_counted():
+    spec = EpisodeSpec(Place("citystreet", "day", "SUMO_VEHICLE"), 0.0, 1)
+    batch = EpisodeBatch([spec], LONG_TEN, open_policy("hover", {}).env)
+    (group,) = batch.groups
+    solid = group.simulation.scene.colliders
+    house = int(np.flatnonzero(solid.prism_top > 15.0)[0])
+    first, last = solid.prism_first[house : house + 2]
+    middle = solid.prism_points[first:last].mean(axis=0)
+    found = []
+    for height in (0.5, 1.0):
+        up = solid.prism_bottom[house] + height * (solid.prism_top - solid.prism_bottom)[house]
+        group.simulation.place(np.array([[*middle, up + 60.0 * (height == 1.0), 0.0]]))
+        found.append(bool(inside_things(group)[0]))
+    assert found == [True, False]
