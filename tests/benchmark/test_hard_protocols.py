@@ -13,6 +13,7 @@ from eyas.benchmark.flight.meter import inside_things
 from eyas.benchmark.plan.latency import delay_from
 from eyas.benchmark.plan.plan import EvaluationPlan
 from eyas.benchmark.policies.table import open_policy
+from eyas.benchmark.protocols.crowd import CoatScenario
 from eyas.benchmark.protocols.mission import STAGES, MissionScenario
 from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.benchmark.statistics.intervals import clusters_of, rate_of
@@ -24,7 +25,7 @@ from eyas.engine.sim.scenes import load_network, load_scene
 from eyas.engine.traffic.library import TEST_DURATION
 from eyas.engine.world.maps import MAPS
 
-LONG_TEN, WIDE, MISSION = map(PROTOCOLS.get, ("long-10", "recover-wide", "mission"))
+LONG_TEN, WIDE, MISSION, COAT = map(PROTOCOLS.get, ("long-10", "recover-wide", "mission", "coat"))
 
 
 def test_ten_minutes_have_24_conditions_and_fit_into_the_recordings():
@@ -199,3 +200,20 @@ def test_a_drone_in_a_crown_or_a_roof_is_counted():
         group.simulation.place(np.array([[*middle, up + 60.0 * (height == 1.0), 0.0]]))
         found.append(bool(inside_things(group)[0]))
     assert found == [True, False]
+
+
+@pytest.mark.slow
+def test_a_coat_changes_once_in_the_middle_to_that_of_the_nearest():
+    short = COAT.changed({"done": {"total_steps": 64}})
+    spec = EpisodeSpec(Place("citystreet", "day", "Pedestrian"), 0.0, 1, TEST_SEEDS + 1)
+    batch = EpisodeBatch([spec], short, open_policy("hover", {}).env)
+    scenario = CoatScenario(batch, short, [spec])
+    (group,) = batch.groups
+    target, looks = int(group.simulation.snapshot.targets.actor[0]), []
+    for step in range(16):
+        scenario.measure(step, np.ones(1, np.bool_))
+        own = group.simulation.looks_around(0)
+        looks.append((int(own.model[0, target]), *own.colour[0, target].tolist()))
+    assert len(set(looks[:7])) == len(set(looks[7:])) == 1
+    assert looks[0] != looks[-1]
+    assert set(scenario.figures(0)) >= {"kept_before", "kept_after", "kept_share"}

@@ -32,6 +32,7 @@ PROTOCOLS: Registry[Protocol] = Registry(
         "referring": f"{_ROOM}.referring:REFERRING",
         "mission": f"{_ROOM}.mission:MISSION",
         "crowd": f"{_ROOM}.crowd:CROWD",
+        "coat": f"{_ROOM}.crowd:COAT",
         "pair": f"{_ROOM}.team:PAIR",
         "team": f"{_ROOM}.team:TEAM",
     },

@@ -162,6 +162,12 @@ _ENDS: tuple[tuple[str, str, tuple[str, ...], tuple[str, ...]], ...] = (
         ("kept_share", "identity_switches", "kept", "tsr"),
     ),
     (
+        "coat",
+        "crowd",
+        ("hover", "sighted", "eyas"),
+        ("kept_share", "kept_before", "kept_after", "tsr"),
+    ),
+    (
         "pair",
         "pair",
         ("hover", "sighted", "relay", "eyas"),
