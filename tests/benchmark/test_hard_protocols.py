@@ -111,13 +111,12 @@ def test_roofs_have_many_lengths_over_unchanged_roads():
     assert (low > roofed.terrain.floor + 6.0).all()
 
 
-def judged(nearest, wanted, *, home, renamed=True):
+def judged(nearest, wanted, *, home):
     """Return the figures of a flight of which this is all that is known."""
     scenario = MissionScenario.__new__(MissionScenario)
     scenario._period = MISSION.period
     scenario._nearest, scenario._wanted = nearest[None], wanted[None]
     scenario._home = np.full((1, len(nearest)), home)
-    scenario._renamed = np.array([renamed])
     return scenario.figures(0)
 
 

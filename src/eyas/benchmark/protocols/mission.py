@@ -38,7 +38,7 @@ _VISIBILITY, _LIGHT = 60.0, 0.3  # Of the fog at its end [m], and share of the l
 _CONTRADICTED: Final = 165.0  # When words come that fit nothing in view [s]
 _CHANGED: Final = (195.0, 215.0)
 """Between which times another target is named: as soon as words tell one in view apart [s]. Where
-none can be named, the stage is passed by whoever has got there."""
+none can be named, the first target has to be followed on."""
 _HOME: Final = 250.0  # When the drone is called back [s]
 _NEAR: Final = 40.0  # Distance from its start at which a drone is back [m]
 
@@ -100,8 +100,7 @@ class MissionScenario(ReferringScenario):
         for name, end in STAGES.items():
             last = round(end / self._look)
             looks = (self._home[row] if name == "home" else followed)[:last]
-            own = bool(looks[-round(_JUDGED / self._look) :].mean() >= 0.5)
-            passed &= own or (name == "changed" and not self._renamed[row])
+            passed &= bool(looks[-round(_JUDGED / self._look) :].mean() >= 0.5)
             figures[name] = float(passed)
         return {"score": float(np.mean([*figures.values()])), **figures}
 
