@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.benchmark.episodes import loss_sites
+from eyas.benchmark.episodes import first_fitting, loss_sites
 from eyas.benchmark.episodes.episode import EpisodeSpec, Place
 from eyas.benchmark.episodes.episode_batch import EpisodeBatch
 from eyas.benchmark.episodes.from_above import FromAbove
@@ -11,7 +11,7 @@ from eyas.benchmark.episodes.loss_sites import kind_of, losses_at_sites
 from eyas.benchmark.flight.batch_flight import BatchFlight
 from eyas.benchmark.flight.meter import inside_things
 from eyas.benchmark.plan.latency import delay_from
-from eyas.benchmark.plan.plan import EvaluationPlan
+from eyas.benchmark.plan.plan import EvaluationPlan, batches
 from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.protocols.crowd import CoatScenario
 from eyas.benchmark.protocols.mission import STAGES, MissionScenario
@@ -216,3 +216,12 @@ def test_a_coat_changes_once_in_the_middle_to_that_of_the_nearest():
     assert len(set(looks[:7])) == len(set(looks[7:])) == 1
     assert looks[0] != looks[-1]
     assert set(scenario.figures(0)) >= {"kept_before", "kept_after", "kept_share"}
+
+
+def test_each_long_flight_is_an_observation_of_its_own(monkeypatch):
+    monkeypatch.setattr(first_fitting, "visible_at_start", lambda own, _: [True] * len(own))
+    plan = EvaluationPlan(policy="hover", protocol="long-10")
+    episodes = [episode for part in batches(plan) for episode in part]
+    assert len(episodes) == len({episode.seed for episode in episodes}) == 96
+    alone = plan.model_copy(update={"maps": ("village",), "weathers": ("snow",)})
+    assert {episode for part in batches(alone) for episode in part} <= set(episodes)

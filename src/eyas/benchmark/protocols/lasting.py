@@ -1,6 +1,6 @@
 """Episodes that last: is the target kept, found, and kept apart from others that look like it?"""
 
-from eyas.benchmark.episodes.first_fitting import with_visible_targets
+from eyas.benchmark.episodes.first_fitting import visible_and_independent, with_visible_targets
 from eyas.benchmark.episodes.neighbours import with_neighbours
 from eyas.benchmark.protocols.envelope import Envelope, Gimbal
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
@@ -28,6 +28,7 @@ LONG_TEN = LONG.like(
     weathers=("day", "night", "foggy", "snow"),
     columns=("losses_per_hour", "kept", "tsr", "flawless", "losses", "found_again", "crashed"),
     rank="kept",
+    choose=visible_and_independent,
     oracles={"action_repeat": 4},
 )
 """As long as fits into the recordings for tests, which last 600 s: there are no longer ones.
