@@ -43,6 +43,8 @@ def test_ten_minutes_have_24_conditions_and_fit_into_the_recordings():
 @pytest.mark.parametrize("name", [name for name in PROTOCOLS.names() if name != "paper"])
 def test_all_but_two_fly_in_traffic_that_is_kept_for_tests(name):
     protocol = PROTOCOLS.get(name)
+    length = protocol.settings.done.total_steps * 0.002
+    assert length == pytest.approx(protocol.steps * protocol.period)  # else no step ends a flight
     seeds = protocol.recordings
     drawn = name in ("standard", "unseen", "corrupted")  # their choosers name the recordings
     assert drawn or (seeds and min(seeds) >= TEST_SEEDS)
