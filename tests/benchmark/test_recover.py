@@ -129,6 +129,7 @@ class Covers:
 
     def __init__(self, other):
         self.covered, self.over = other.covered, other.over
+        self.new_instruction = other.new_instruction
         self.instruction, self.measure, self.figures = (
             other.instruction,
             lambda *_: None,

@@ -39,7 +39,8 @@ _Maps = Annotated[
     ),
 ]
 _Weathers = Annotated[
-    list[str] | None, typer.Option("--weather", help=f"By default day; {SEVERAL}.")
+    list[str] | None,
+    typer.Option("--weather", help=f"By default the protocol's, mostly day; {SEVERAL}."),
 ]
 _Targets = Annotated[
     list[str] | None,
@@ -133,7 +134,7 @@ def evaluate(
         "policy": policy,
         "protocol": protocol,
         **({"maps": maps} if maps else {}),
-        "weathers": weathers or ["day"],
+        **({"weathers": weathers} if weathers else {}),
         "targets": targets,
         **{"episodes": episodes, "latency": latency, "sampled": sample, "batch": batch},
         "in_process": in_process,

@@ -11,6 +11,7 @@ from eyas.engine.traffic.library import RESPAWN_GROUPS, TEST_TRAFFIC
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.recipe import (
     DENSE_FILE,
+    DENSE_TEST_FILE,
     MIXED_FILE,
     SIGNALS_TRAFFIC_FILE,
     TEST_TOWNS,
@@ -38,7 +39,9 @@ def test_a_map_ships_the_roads_and_the_traffic_of_seed_0(name):
     lit = name.removesuffix("-bare") in ("citystreet", "downtown", "village", "desert")
     usual = {TRAFFIC_FILE, SIGNALS_TRAFFIC_FILE} if lit else {TRAFFIC_FILE}
     assert set(files[: len(usual)]) == usual
-    mixed = {DENSE_FILE, MIXED_FILE} if name in ("citystreet", "downtown") else set()
+    mixed = (
+        {DENSE_FILE, DENSE_TEST_FILE, MIXED_FILE} if name in ("citystreet", "downtown") else set()
+    )
     tests = {
         town_traffic_file(0, seed) for seed in TEST_TRAFFIC if not name.startswith("simpleway")
     }

@@ -12,6 +12,7 @@ Fits = Callable[[Sequence[EpisodeSpec], Protocol], Sequence[object]]
 fit."""
 
 _TRIED = 50  # Number of seeds that are tried for each episode
+_CONDITION = 10_000  # From the first seed of a condition to that of the next
 _HOPELESS = 1_000  # Number of starts after which no more are tried if none of them fits
 _PARTS = 25  # Groups in which starts are tried: a few together cost less than each alone
 
@@ -26,6 +27,22 @@ def with_visible_targets(
     """
     wanted = "a target that is visible at the start"
     return first_fitting(places, protocol, count, first_seed, fits=_all, wanted=wanted)
+
+
+def visible_and_independent(
+    places: Sequence[Place], protocol: Protocol, count: int, first_seed: int
+) -> list[EpisodeSpec]:
+    """Choose the same, with other seeds in each condition of the protocol.
+
+    Few long flights would else be one observation in all conditions, as those of one seed are.
+    """
+    known = [(name, weather) for name in protocol.maps for weather in protocol.weathers]
+    chosen = []
+    for place in places:
+        number = known.index(place[:2]) if place[:2] in known else len(known)
+        first = first_seed + number * _CONDITION
+        chosen += with_visible_targets([place], protocol, count, first)
+    return chosen
 
 
 def _all(episodes: Sequence[EpisodeSpec], _: Protocol) -> list[bool]:

@@ -18,6 +18,7 @@ from eyas.benchmark.protocols.protocol import Protocol
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.clock import PHYSICS_STEP
+from eyas.engine.core.identity.build import this_build
 from eyas.engine.policies.sight import visible_shares
 from eyas.engine.settings.env import EnvConfig
 from eyas.engine.sim.simulation import Simulation
@@ -48,7 +49,8 @@ def seen_from_above(
         rows = [alone.index(episode) for episode in plain]
         return FromAbove(*(array[rows] for array in seen))
     make = partial(_seen, episodes, protocol, period)
-    return cached(EntryKind.OCCLUSION, make, (protocol.hash, period, *episodes), of=FromAbove)
+    inputs = (this_build().world, protocol.hash, period, *episodes)
+    return cached(EntryKind.OCCLUSION, make, inputs, of=FromAbove)
 
 
 def _without_camera(changes: Mapping[str, Any]) -> dict[str, Any]:

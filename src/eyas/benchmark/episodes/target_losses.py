@@ -28,7 +28,7 @@ COVERED = {"covered-2s": 2.0, "covered-5s": 5.0, "covered-10s": 10.0, "covered-1
 _LENGTH = (4.0, 12.0)  # Shortest and longest loss by things [s]
 _MOST = 3  # Largest number of losses by things in an episode
 
-_PERIOD = 0.256
+PERIOD = 0.256
 """Time between two looks: a whole number of control steps, so that covers begin with one [s]."""
 
 _FAR = 12.0
@@ -36,7 +36,7 @@ _FAR = 12.0
 waits where it has lost it has it in its picture again, whose half is 9 m wide at the most."""
 
 _STEADY = 0.77  # Shorter glimpses than this do not end a loss [s]: no more than two looks
-_BEGUN = 3.0  # Earliest time of a loss: before, a policy must get hold of its target [s]
+BEGUN = 3.0  # Earliest time of a loss: before, a policy must get hold of its target [s]
 
 _ONSETS = (5.0, 20.0), (42.0, 58.0)
 """Between which times a camera is covered, twice in an episode [s]."""
@@ -53,7 +53,7 @@ class TargetLoss(NamedTuple):
 
 def hidden_spans(
     shares: Floats,  # Visible share of it at each look, as from `seen_from_above`, shape (K,)
-    period: float = _PERIOD,  # Time between two looks [s]
+    period: float = PERIOD,  # Time between two looks [s]
 ) -> list[TargetLoss]:
     """Return when a target is out of sight."""
     hidden = np.concatenate([[False], shares < LEAST_VISIBLE, [False]])
@@ -75,7 +75,7 @@ def losses_by_things(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> lis
     loss ends early enough for a search. Shorter ones do not count.
     """
     length = protocol.steps * protocol.period
-    seen = seen_from_above(episodes, protocol, _PERIOD)
+    seen = seen_from_above(episodes, protocol, PERIOD)
     found = []
     for shares, places in zip(*seen, strict=True):
         spans = hidden_spans(shares)
@@ -83,18 +83,18 @@ def losses_by_things(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> lis
         fits = (
             1 <= len(losses) <= _MOST
             and spans[0].start >= 1.0
-            and losses[0].start >= _BEGUN
+            and losses[0].start >= BEGUN
             and losses[-1].end <= length - SEARCH_LIMIT
             and all(loss.end - loss.start <= _LENGTH[1] for loss in losses)
-            and all(_moved(places, loss) >= _FAR for loss in losses)
+            and all(moved(places, loss) >= _FAR for loss in losses)
         )
         found.append(losses if fits else [])
     return found
 
 
-def _moved(places: Floats, loss: TargetLoss) -> float:
+def moved(places: Floats, loss: TargetLoss) -> float:
     """Return the distance between where a target vanishes and where it comes out [m]."""
-    first, last = round(loss.start / _PERIOD) - 1, round(loss.end / _PERIOD) - 1
+    first, last = round(loss.start / PERIOD) - 1, round(loss.end / PERIOD) - 1
     return float(exact.hypot(*(places[last] - places[max(first - 1, 0)])))
 
 
@@ -106,7 +106,7 @@ def covered_losses(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> list[
     """
     plain = [episode._replace(variant="") for episode in episodes]
     alike = list(dict.fromkeys(plain))
-    visible = seen_from_above(alike, protocol, _PERIOD).shares >= LEAST_VISIBLE
+    visible = seen_from_above(alike, protocol, PERIOD).shares >= LEAST_VISIBLE
     onsets = {one: _onsets(own, one.seed) for one, own in zip(alike, visible, strict=True)}
     return [
         [TargetLoss(start, start + COVERED.get(episode.variant, 0.0)) for start in onsets[same]]
@@ -116,21 +116,21 @@ def covered_losses(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> list[
 
 def _onsets(visible: NDArray[np.bool_], seed: int) -> list[float]:
     """Return two times at which covers of all lengths may come; none if there are not two."""
-    random, second = stream(seed, "cover"), round(1.0 / _PERIOD)
+    random, second = stream(seed, "cover"), round(1.0 / PERIOD)
     chosen = []
     for low, high in _ONSETS:
         looks = [
             look
-            for look in range(round(low / _PERIOD), round(high / _PERIOD))
+            for look in range(round(low / PERIOD), round(high / PERIOD))
             if visible[look - second : look].all()
             and all(
-                visible[look + round(length / _PERIOD) :][:second].all()
+                visible[look + round(length / PERIOD) :][:second].all()
                 for length in COVERED.values()
             )
         ]
         if not looks:
             return []
-        chosen.append(looks[int(random.integers(len(looks)))] * _PERIOD)
+        chosen.append(looks[int(random.integers(len(looks)))] * PERIOD)
     return chosen
 
 

@@ -19,6 +19,7 @@ from eyas.benchmark.records.record import EpisodeRecord
 from eyas.engine.core.errors import ActionError
 from eyas.engine.envs.actions import command_width, make_actions
 from eyas.engine.policies.policy import Decision, Failure, Policy, PolicyInput, Start
+from eyas.engine.policies.steering import PERIOD
 
 _PERIOD = 0.128  # Time between two looks [s]
 
@@ -76,13 +77,16 @@ class BatchFlight:
         seeds = np.array([episode.seed for episode in self._episodes])
         clear = clear_shares(self._episodes, self._protocol)
         self._delay.begin(seeds.tolist())
-        words = self._scenario.instruction()
+        self._told = words = self._scenario.instruction()
         self._batch.tell(words)
         start = Start(seeds, self._boxes, words, self._batch.roads, self._batch.is_open)
         self._guarded(lambda: self._policy.begin(start))
         told = np.zeros(len(seeds), np.bool_)
         for step in range(self._protocol.steps):
             self._batch.covered[:] = self._scenario.covered(step)
+            if (new := self._scenario.new_instruction(step)) is not None:
+                self._batch.tell(new)
+                self._told = new
             self._answer(step)  # before the next look, whose answer takes this one's place
             self._decide(step)
             self._answer(step)
@@ -135,6 +139,7 @@ class BatchFlight:
             covered=batch.covered,
             heard=heard,
             clock=step * self._protocol.period,
+            told=self._told,
         )
         begun = time.perf_counter()
         decision = self._guarded(lambda: self._policy.act(sight))
@@ -148,7 +153,9 @@ class BatchFlight:
         if self._radio is not None and decision.messages is not None:
             self._radio.say(deciding, decision.messages)
         self._take(decision.actions, deciding)
-        repeat = max(self._policy.env.action_repeat, self._control_steps(self._delay.period))
+        # Policies count control steps of 8 ms, whichever the protocol has.
+        held = self._policy.env.action_repeat * PERIOD
+        repeat = max(map(self._control_steps, (PERIOD, held, self._delay.period)))
         for row in np.flatnonzero(deciding & self._active).tolist():
             late = self._control_steps(self._delay.next(row, taken))
             self._effective[row] = step + late

@@ -17,6 +17,7 @@ from eyas.benchmark.protocols.protocol import LEAST_SIZE, Protocol
 from eyas.benchmark.records.record import EpisodeRecord, PublishedFigures, Trace
 from eyas.engine.core.rng import stream
 from eyas.engine.policies.policy import Failure
+from eyas.engine.sim.starts import AROUND_BODY
 from eyas.engine.task.done import DoneReason
 
 LEAST_LOSS = 0.5  # Shortest time out of the picture that counts as a loss [s]
@@ -85,7 +86,6 @@ Floats = NDArray[np.float64]
 
 LOOK = 4  # Control steps between two counts of the target's pixels
 TRACE = 20  # Control steps between two points of a trace
-TRACE_PERIOD = 0.16  # Time between two points, with control steps of 8 ms [s]
 
 _PUBLISHED_ACTIONS = 305, 363
 """Fewest and most actions that the original's client makes in 1,500 physics steps."""
@@ -127,6 +127,12 @@ def _measured(group: EpisodeGroup) -> _Measured:
     )
 
 
+def inside_things(group: EpisodeGroup) -> NDArray[np.bool_]:
+    """Return whether each drone is in a crown, a wall or a roof, shape (K,): none stops it."""
+    place = group.simulation.snapshot.trackers.position
+    return group.simulation.clearance.lifted(place, AROUND_BODY) > place[:, 2]
+
+
 class _Sums(NamedTuple):
     """What is added up over the control steps of N flights."""
 
@@ -134,6 +140,7 @@ class _Sums(NamedTuple):
     path: Floats  # [m], shape (N,)
     jerk: Floats  # Squared jerk [m^2/s^6], shape (N,)
     height: Floats  # Height above the target [m], shape (N,)
+    inside: Floats  # Points of the trace inside of things, shape (N,)
     shares: Floats  # Looks with a visible pixel, and visible shares, shape (N, 2)
 
 
@@ -146,7 +153,7 @@ class Meter:
         self._reward = np.zeros((count, steps))
         self._followed = np.zeros((count, steps), np.bool_)
         self._trace = np.zeros((count, steps // TRACE, 4))
-        self._sums = _Sums(*(np.zeros((count, *own)) for own in ((), (), (), (), (2,))))
+        self._sums = _Sums(*(np.zeros((count, *own)) for own in ((), (), (), (), (), (2,))))
         self.length = np.zeros(count, np.int64)  # Control steps flown, shape (N,)
         self.reason = np.zeros(count, np.int64)  # `DoneReason` of each, shape (N,)
         self._last = batch.gathered(_measured)
@@ -171,6 +178,7 @@ class Meter:
         # All active flights have begun together, so that they have flown equally many steps.
         if len(rows) and (step[0] + 1) % TRACE == 0:
             self._trace[rows, step[0] // TRACE] = np.concatenate((place[:, :2], target), axis=1)
+            sums.inside[rows] += self._batch.gathered(inside_things)[rows]
         if len(rows) and (step[0] + 1) % LOOK == 0:
             pixels = self._batch.pixels()[rows]
             visible = np.where(near[rows], pixels[:, 0], 0)
@@ -215,7 +223,7 @@ class Meter:
             height=float(self._sums.height[row]) / flown,
             jerk=float(np.sqrt(self._sums.jerk[row] / flown)),
             published=published(reward, protocol.steps, episode.seed),
-            figures=figures,
+            figures={**figures, "inside": float(self._sums.inside[row]) / max(length // TRACE, 1)},
             trace=self._trace_of(row, length // TRACE),
         )
 

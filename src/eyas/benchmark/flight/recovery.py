@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.benchmark.episodes.episode import EpisodeSpec
 from eyas.benchmark.episodes.episode_batch import EpisodeBatch
+from eyas.benchmark.episodes.loss_sites import losses_at_sites
 from eyas.benchmark.episodes.target_losses import (
     COVERED,
     LEAST_VISIBLE,
@@ -30,6 +31,8 @@ Mask = NDArray[np.bool_]
 class RecoveryScenario(Scenario):
     """Covers cameras where the protocol does so, and measures what happens after losses."""
 
+    by_things = staticmethod(losses_by_things)  # Returns the losses where no camera is covered
+
     def __init__(
         self,
         batch: EpisodeBatch,
@@ -39,7 +42,7 @@ class RecoveryScenario(Scenario):
         super().__init__(batch.count)
         self._batch, self._period = batch, protocol.period
         self._variants = [episode.variant for episode in episodes]
-        losses = covered_losses if protocol.variants else losses_by_things
+        losses = covered_losses if protocol.variants else self.by_things
         self._losses = losses(episodes, protocol)
         self._covers = np.zeros((protocol.steps, batch.count), np.bool_)
         if protocol.variants:
@@ -97,6 +100,12 @@ class RecoveryScenario(Scenario):
             own = figures["recovered"] if name == self._variants[row] else None
             figures[f"recovered_{name.removeprefix('covered-')}"] = own
         return figures
+
+
+class WideRecoveryScenario(RecoveryScenario):
+    """The same, of losses under roofs of all lengths."""
+
+    by_things = staticmethod(losses_at_sites)
 
 
 def recovery_figures(

@@ -18,6 +18,10 @@ class Scenario:
         """Return the instruction of policies at the start; None: no words."""
         return None
 
+    def new_instruction(self, step: int) -> Instruction | None:
+        """Return the instructions from a control step on; None: they stay as they are."""
+        return None
+
     def covered(self, step: int) -> Mask:
         """Return whose cameras show nothing at a control step, shape (N,)."""
         return self._nobody

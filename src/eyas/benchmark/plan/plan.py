@@ -63,11 +63,11 @@ class EvaluationPlan(Config):
     @model_validator(mode="before")
     @classmethod
     def _at_home(cls, values: Any) -> Any:  # noqa: ANN401  # whatever a caller gives
-        """Take the protocol's maps if none are named."""
-        if not isinstance(values, dict) or "maps" in values:
+        """Take the protocol's maps and weathers if none are named."""
+        if not isinstance(values, dict) or {"maps", "weathers"} <= values.keys():
             return values
         protocol = protocol_named(str(values.get("protocol", "paper")))
-        return {**values, "maps": protocol.maps}
+        return {"maps": protocol.maps, "weathers": protocol.weathers, **values}
 
     @property
     def rules(self) -> Protocol:
@@ -113,7 +113,8 @@ class EvaluationPlan(Config):
     def command(self) -> str:
         """The command that repeats it."""
         usual = {name: field.default for name, field in type(self).model_fields.items()}
-        usual["maps"] = EvaluationPlan(policy=self.policy, protocol=self.protocol).maps
+        home = EvaluationPlan(policy=self.policy, protocol=self.protocol)
+        usual |= {"maps": home.maps, "weathers": home.weathers}
         chosen = self.model_dump(
             exclude={"env", "settings", "sampled", "in_process", "policy", "seeds"}
         )

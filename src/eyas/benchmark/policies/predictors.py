@@ -32,11 +32,11 @@ class ConstantVelocity:
 class StraightAndWait:
     """The target goes straight on for a distance, and is waited for there.
 
-    The distance is the length of the covers of the village: a floor that a policy in `recover` must
-    be above, as the two others never wait.
+    45 m is the length of the covers of the village: a floor that a policy in `recover` must be
+    above, as the two others never wait. `recover-wide` has covers for which no distance is right.
     """
 
-    def __init__(self, distance: float = 45.0) -> None:  # [m]
+    def __init__(self, distance: float) -> None:  # [m]
         self._distance = distance
 
     def begin(self, start: Start) -> None:
@@ -89,9 +89,19 @@ def constant_velocity(changes: Mapping[str, Any]) -> SightOracle:
     return SightOracle(changes, ConstantVelocity())
 
 
+def wait_20(changes: Mapping[str, Any]) -> SightOracle:
+    """Return the oracle that goes straight on for 20 m, and waits there."""
+    return SightOracle(changes, StraightAndWait(20.0))
+
+
 def wait_45(changes: Mapping[str, Any]) -> SightOracle:
     """Return the oracle that goes straight on for 45 m, and waits there."""
-    return SightOracle(changes, StraightAndWait())
+    return SightOracle(changes, StraightAndWait(45.0))
+
+
+def wait_90(changes: Mapping[str, Any]) -> SightOracle:
+    """Return the oracle that goes straight on for 90 m, and waits there."""
+    return SightOracle(changes, StraightAndWait(90.0))
 
 
 def road_graph(changes: Mapping[str, Any]) -> SightOracle:

@@ -40,7 +40,7 @@ _CHANGE = 0.25  # How often the speed of a guess changes [1/s]
 _STANDING = 3
 """One of so many guesses stands where the target vanished: it may have stopped out of sight."""
 
-_LONGEST = 40  # Most points of a lane that something hides: longer than any tunnel
+_LONGEST = 80  # Most points of a lane that something hides: the longest roof, 150 m
 _PERIOD = 0.064  # Time between two moves of the guesses [s]
 
 

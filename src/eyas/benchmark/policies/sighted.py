@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from eyas.benchmark.policies.oracle_commands import actions_of_oracles, flown_over
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
+from eyas.engine.policies.policy import BLIND, COME_BACK, Decision, PolicyInput, Start, env_config
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -90,6 +90,7 @@ class SightOracle:
         """Forget the targets."""
         count = len(start.seeds)
         self._last = LastMotion.create(count)
+        self._begun = np.zeros((count, 2))  # Middle of each first picture [m], shape (N, 2)
         self._known = np.zeros(count, np.bool_)
         self._sees = np.zeros(count, np.bool_)
         self._seen_at = np.full(count, -1)
@@ -110,6 +111,7 @@ class SightOracle:
         tick, middle, yaw = episodes.tick, episodes.view_centre[:, :2], trackers.euler[:, 2]
         new = self._seen_at < 0
         self._last.place[new], self._seen_at[new] = middle[new], tick[new]
+        self._begun[new] = middle[new]
         self._look(sight)
         self.clue = clue = Clue(
             self._last,
@@ -120,6 +122,9 @@ class SightOracle:
             sight.covered,
         )
         places = self._places(clue, sight)
+        if sight.told is not None:
+            home = np.array([words == COME_BACK for words in sight.told.words])
+            places = np.where(home[:, None], self._begun, places)
         return Decision(flown_over(state, places, self._speeds(places, clue), self.env))
 
     def _speeds(self, places: Floats, clue: Clue) -> Floats:

@@ -22,7 +22,7 @@ _BUILT_IN = {
     "follow": f"{_ROOM}.follow:Follow",
     "sighted": f"{_ROOM}.road_search:sighted",
     "constant-velocity": f"{_ROOM}.predictors:constant_velocity",
-    "wait-45": f"{_ROOM}.predictors:wait_45",
+    **{f"wait-{way}": f"{_ROOM}.predictors:wait_{way}" for way in (20, 45, 90)},
     "road-graph": f"{_ROOM}.predictors:road_graph",
     "relay": f"{_ROOM}.relay:relay",
     "servo": f"{_ROOM}.servo:Servo",
@@ -44,7 +44,8 @@ POLICIES: Registry[Callable[..., Any]] = Registry(
 """Built in are classes and functions that take changes of `env`; what installed packages
 add is what `package.module:name` may be, see `load_callable`."""
 
-ORACLES = ("follow", "sighted", "constant-velocity", "wait-45", "road-graph", "relay")
+WAITERS = ("wait-20", "wait-45", "wait-90")  # Straight on by so many metres, and wait
+ORACLES = ("follow", "sighted", "constant-velocity", *WAITERS, "road-graph", "relay")
 """Policies that know the truth; they fly by seven actions or, where `env.actions` says so, by
 velocities."""
 

@@ -14,6 +14,8 @@ from eyas.benchmark.flight.scenario import Scenario
 from eyas.benchmark.protocols.envelope import Envelope
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
 from eyas.engine.policies.sight import nearest_to_middle
+from eyas.engine.sim.simulation import Simulation
+from eyas.engine.traffic.library import TEST_TRAFFIC
 
 _HEIGHT: Final = 12.0
 """Height of the drone above the ground [m]: people are then 5 of 84 pixels wide, and 2 from 22
@@ -49,6 +51,33 @@ class CrowdScenario(Scenario):
         }
 
 
+class CoatScenario(CrowdScenario):
+    """Lets the target look like the nearest other from the middle of the flight on."""
+
+    def measure(self, step: int, active: NDArray[np.bool_]) -> None:
+        """Find out whom the active flights follow, and change the target's looks once."""
+        super().measure(step, active)
+        if step + 1 == self._nearest.shape[1] * LOOK // 2:
+            for group in self._batch.groups:
+                for own, row in enumerate(group.rows.tolist()):
+                    _change(group.simulation, own, int(self._targets[row]))
+
+    def figures(self, row: int) -> dict[str, float | None]:
+        """Return the shares of looks at the target before and after, beside those of a crowd."""
+        before, after = np.array_split(self._nearest[row] == self._targets[row], 2)
+        own = {"kept_before": float(before.mean()), "kept_after": float(after.mean())}
+        return {**super().figures(row), **own}
+
+
+def _change(simulation: Simulation, tracker: int, target: int) -> None:
+    actors, _ = simulation.actors_around(tracker)
+    away = np.square(actors.position[0] - actors.position[0, target]).sum(axis=1)
+    away[~actors.present[0]] = away[target] = np.inf
+    looks, other = simulation.looks_around(tracker), int(away.argmin())
+    red, green, blue = looks.colour[0, other].tolist()
+    simulation.dress(tracker, target, int(looks.model[0, other]), (red, green, blue))
+
+
 def switches(nearest: NDArray[np.int64], target: int, least: int) -> int:
     """Return how often a flight has gone over from its target to another.
 
@@ -80,6 +109,15 @@ CROWD = Protocol(
     rank="kept_share",
     alike=True,
     choose=in_company,
+    recordings=TEST_TRAFFIC,
     scenario=CrowdScenario,
     envelope=Envelope(lowest=8.0, highest=15.0),
+)
+
+COAT = CROWD.like(
+    "coat",
+    "60 s: somebody in a crowd, who after half of it looks like the one next to him",
+    alike=False,
+    columns=("kept_share", "kept_before", "kept_after", "identity_switches", "tsr", "losses"),
+    scenario=CoatScenario,
 )

@@ -107,6 +107,7 @@ class Protocol:
     episodes: int = 25
     """Default number of episodes for each place and direction: a hundred for each place."""
     maps: tuple[str, ...] = ("citystreet",)  # Where it is flown unless a user names other maps
+    weathers: tuple[str, ...] = ("day",)  # In which it is flown unless a user names others
     recordings: tuple[int, ...] = ()
     """Seeds of the recorded traffic that its episodes take in turn; none: that of the settings."""
     elsewhere: bool = False

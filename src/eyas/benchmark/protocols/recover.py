@@ -1,9 +1,11 @@
 """The target is out of sight for seconds, and must be found again."""
 
+from eyas.benchmark.episodes.loss_sites import at_sites, kind_of
 from eyas.benchmark.episodes.target_losses import COVERED, with_losses
-from eyas.benchmark.flight.recovery import RecoveryScenario
+from eyas.benchmark.flight.recovery import RecoveryScenario, WideRecoveryScenario
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
 from eyas.engine.traffic.library import TEST_TRAFFIC
+from eyas.engine.world.maps.recipe import TEST_TOWNS
 
 _LENGTH = {"total_steps": 45_000, "no_reward_steps": NEVER}
 
@@ -33,4 +35,28 @@ RECOVER_CAMERA = Protocol(
     scenario=RecoveryScenario,
     variants={name: {} for name in COVERED},
     recordings=TEST_TRAFFIC,
+)
+
+_COVERED = "eyas.maps.covered"
+
+RECOVER_WIDE = RECOVER.like(
+    "recover-wide",
+    "60 s: roofs of 10 to 150 m over straight roads, bends and junctions, in towns and on maps",
+    {"traffic": {"drivers": "normal"}, "done": {"total_steps": 30_000}},
+    episodes=6,
+    maps=(
+        f"{_COVERED}:CITYSTREET:{TEST_TOWNS[0]}",
+        f"{_COVERED}:DOWNTOWN:{TEST_TOWNS[0]}",
+        f"{_COVERED}:DOWNTOWN:{TEST_TOWNS[1]}",
+        f"{_COVERED}:VILLAGE:{TEST_TOWNS[1]}",
+        f"{_COVERED}:LAKE",
+        f"{_COVERED}:FARMLAND",
+    ),
+    elsewhere=True,
+    choose=at_sites,
+    scenario=WideRecoveryScenario,
+    groups={
+        "way": lambda record: kind_of(record.variant)[0],
+        "hidden": lambda record: kind_of(record.variant)[1],
+    },
 )

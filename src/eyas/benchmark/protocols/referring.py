@@ -30,7 +30,7 @@ from eyas.engine.policies.sight import nearest_to_middle, visible_shares
 from eyas.engine.settings.env import EnvConfig
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.targets.grammar.naming import Phrase
-from eyas.engine.traffic.library import CANONICAL_MIX, DENSE_VEHICLES
+from eyas.engine.traffic.library import CANONICAL_MIX, DENSE_VEHICLES, TEST_TRAFFIC
 
 _VARIANTS: Final = ("right", "other", "contradictory", "none")
 _TRIED: Final = 12  # Number of seeds that are tried for each episode
@@ -82,7 +82,7 @@ def among_look_alikes(
                 f"'{place.map}' have look-alikes; {count} are needed"
             )
         chosen += [
-            EpisodeSpec(place, direction, int(seed), variant=variant)
+            EpisodeSpec(place, direction, int(seed), protocol.recordings[0], variant)
             for seed in found.tolist()
             for direction in protocol.directions
             for variant in protocol.variants
@@ -93,7 +93,8 @@ def among_look_alikes(
 def _first_seeds(
     place: Place, protocol: Protocol, count: int, first_seed: int
 ) -> NDArray[np.int64]:
-    tried = [EpisodeSpec(place, 0.0, first_seed + k) for k in range(count * _TRIED)]
+    traffic = protocol.recordings[0]
+    tried = [EpisodeSpec(place, 0.0, first_seed + k, traffic) for k in range(count * _TRIED)]
     return np.array(list(islice(_with_a_start(tried, protocol), count)), np.int64)
 
 
@@ -193,6 +194,7 @@ REFERRING = Protocol(
     rank="language_gap",
     gaps=("language_gap",),
     choose=among_look_alikes,
+    recordings=TEST_TRAFFIC[:1],
     stage=stage,
     scenario=ReferringScenario,
     variants={variant: {} for variant in _VARIANTS},

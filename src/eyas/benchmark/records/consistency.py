@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from eyas.benchmark.flight.meter import LEAST_LOSS, LOOK, TRACE, TRACE_PERIOD
+from eyas.benchmark.flight.meter import LEAST_LOSS, LOOK, TRACE
 from eyas.benchmark.protocols.protocol import Protocol
 from eyas.benchmark.records.record import EpisodeRecord
 
@@ -56,7 +56,7 @@ def contradictions(record: EpisodeRecord, protocol: Protocol) -> Iterator[str]:
 
 def _margin(protocol: Protocol) -> float:
     """Return how much farther than over the ground a target can be [m]: the largest height."""
-    return protocol.envelope.highest + TRACE_PERIOD * protocol.envelope.speed
+    return protocol.envelope.highest + TRACE * protocol.period * protocol.envelope.speed
 
 
 def _of_losses(

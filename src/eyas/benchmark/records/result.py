@@ -29,6 +29,7 @@ FEW_SEEDS = f"Fewer than {ENOUGH} independent seeds: intervals are rough, see do
 
 UNITS = {
     "kept": "s",
+    "losses_per_hour": "1/h",
     "search_time": "s",
     "to_find": "s",
     "centre_error": "m",

@@ -8,7 +8,6 @@ import numpy as np
 
 from eyas.benchmark.episodes.episode import Place
 from eyas.benchmark.episodes.target_losses import COVERED
-from eyas.benchmark.flight.meter import TRACE_PERIOD
 from eyas.benchmark.protocols.protocol import Protocol
 from eyas.benchmark.records.record import EpisodeRecord
 from eyas.benchmark.statistics.intervals import survival
@@ -81,11 +80,12 @@ def save_plot(path: Path, title: str, draw: Any) -> None:  # noqa: ANN401  # a f
 
 def _reward(axes: Axes, records: Sequence[EpisodeRecord], horizon: float) -> None:
     """Draw the mean reward and its quartiles; flights that have ended early count as 0."""
-    points = max(round(horizon / TRACE_PERIOD - 0.5), 1)
+    points = max(1, *(len(record.trace.reward) for record in records))
     table = np.zeros((len(records), points))
     for row, record in zip(table, records, strict=True):
         row[: len(record.trace.reward)] = record.trace.reward
-    time = (np.arange(points) + 0.5) * TRACE_PERIOD
+    longest = max(record.duration for record in records)
+    time = (np.arange(points) + 0.5) * longest / points
     low, middle, high = np.quantile(table, (0.25, 0.5, 0.75), axis=0)
     axes.fill_between(time, low, high, color=_SOFT, alpha=0.5, lw=0, label="middle half")
     axes.plot(time, middle, color=_INK, lw=1, ls="--", label="median")

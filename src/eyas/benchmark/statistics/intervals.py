@@ -168,6 +168,19 @@ def mean_of(values: ArrayLike, clusters: Clusters, high: float | None = None) ->
     return Estimate(len(array), clusters.count, mean, spread)
 
 
+def rate_of(events: ArrayLike, times: ArrayLike, clusters: Clusters) -> Estimate:
+    """Return how many events N samples have in a unit of their time, not all of which is 0.
+
+    The interval is that of a ratio of two means, linearised, and symmetric for the logarithm.
+    """
+    count, time = np.asarray(events, np.float64), np.asarray(times, np.float64)
+    rate, spread = float(count.sum() / time.sum()), None
+    if clusters.count >= FEWEST:
+        variance = clusters.variance((count - rate * time) / time.mean())
+        spread = interval_of(rate, variance, clusters.count, clusters.degrees, None)
+    return Estimate(len(count), clusters.count, rate, spread)
+
+
 def worst_fifth_of(values: ArrayLike, clusters: Clusters) -> Estimate:
     """Return the mean of the worst fifth of N shares; fractions of a sample count as such."""
     array = np.asarray(values, np.float64)

@@ -16,6 +16,7 @@ from eyas.benchmark.statistics.intervals import (
     clusters_of,
     difference_interval,
     mean_of,
+    rate_of,
     restricted_mean_of,
     worst_fifth_of,
 )
@@ -92,12 +93,18 @@ class TableRow(NamedTuple):
 
 
 def clusters_in(records: Sequence[EpisodeRecord]) -> Clusters:
-    """Return which records are one observation: those of one seed.
+    """Return which records are one observation: those of one seed, or of one site.
 
     They have the same traffic and start in every weather and with every version, so that a lucky
-    seed raises all of them.
+    seed raises all of them; at one site, all targets vanish and come out at the same places.
     """
-    return clusters_of([each.seed for each in records], [each.direction for each in records])
+    sites = [each.variant.partition("@")[2] for each in records]
+    keys = [
+        (each.map, site) if site else each.seed for each, site in zip(records, sites, strict=True)
+    ]
+    return clusters_of(
+        keys, [0 if site else each.direction for each, site in zip(records, sites, strict=True)]
+    )
 
 
 def thirds(records: Sequence[EpisodeRecord]) -> list[str]:
@@ -234,9 +241,10 @@ def _start_of(record: EpisodeRecord) -> tuple[object, ...]:
 
 
 def _times(records: list[EpisodeRecord], horizon: float) -> dict[str, Estimate]:
-    """Return times of which some are censored: until the target is lost (`kept`), and found.
+    """Return times of which some are censored: until the target is lost (`kept`), and found; and
+    how often it is lost while it is followed.
 
-    Both are restricted means of Kaplan-Meier curves.
+    The times are restricted means of Kaplan-Meier curves.
     """
     seen = [record for record in records if record.found_after is not None]
     finds = [record.found_after is not None for record in records]
@@ -244,6 +252,10 @@ def _times(records: list[EpisodeRecord], horizon: float) -> dict[str, Estimate]:
         record.duration if record.found_after is None else record.found_after for record in records
     ]
     times = {"to_find": restricted_mean_of(waits, finds, horizon, clusters_in(records))}
+    hours = [record.tsr * horizon / 3600.0 for record in records]
+    if any(hours):
+        losses = [record.losses for record in records]
+        times["losses_per_hour"] = rate_of(losses, hours, clusters_in(records))
     if seen:
         lost = [record.lost_after is not None for record in seen]
         watched = [record.watched for record in seen]

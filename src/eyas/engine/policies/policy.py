@@ -31,6 +31,9 @@ class Instruction(NamedTuple):
     attributes: NDArray[np.float32]  # what the phrase says, as numbers, shape (N, A)
 
 
+COME_BACK = "come back to where you began"  # Words that name no target
+
+
 class Start(NamedTuple):
     """The start of N episodes."""
 
@@ -70,6 +73,9 @@ class PolicyInput(NamedTuple):
     clock: float | None = None
     """Time since the start of the flight [s], as any drone's computer knows it; None: one action
     lasts from one look to the next."""
+    told: Instruction | None = None
+    """Latest instructions, which are new in the middle of some flights; observations with the parts
+    `words` and `attributes` have them, too. None where the protocol has no words."""
 
 
 class Failure(NamedTuple):

@@ -47,6 +47,7 @@ DENSE_VEHICLES = 320
 m now and then (with 160, never), and citystreet, which has room for 399, still flows."""
 
 DENSE_DURATION = 300.0  # Length of these: as many vehicle hours as in the others [s]
+DENSE_TEST_DURATION = 80.0  # Length of those for tests, whose episodes take 20 s [s]
 EVADING_MIX = Mix(passenger=0.75, bus=0.15, truck=0.1)
 """Classes of vehicles in the shipped recordings of drivers who evade: no trailers, whose tails
 swing into cars that turn round beside them."""
@@ -56,8 +57,8 @@ STANDARD_DURATION = 1260.0  # Default length of a recording: 21 minutes [s]
 TEST_TRAFFIC = tuple(TEST_SEEDS + number for number in (1, 2, 3))
 """Seeds of the recordings that ship for tests, see `TEST_SEEDS`."""
 
-TEST_DURATION = 300.0
-"""Least length of a recording with such a seed: their episodes are short, but many [s]."""
+TEST_DURATION = 600.0
+"""Least length of a recording with such a seed: that of the longest episodes, `long-10` [s]."""
 
 
 def find_file(

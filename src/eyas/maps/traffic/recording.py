@@ -21,6 +21,7 @@ from eyas.engine.traffic.library import (
     CANONICAL_MIX,
     CANONICAL_SEED,
     DENSE_DURATION,
+    DENSE_TEST_DURATION,
     DENSE_VEHICLES,
     EVADING_MIX,
     RESPAWN_GROUPS,
@@ -38,6 +39,7 @@ from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.recipe import (
     DENSE_FILE,
+    DENSE_TEST_FILE,
     MIXED_FILE,
     SIGNALS_FILE,
     SIGNALS_TRAFFIC_FILE,
@@ -246,16 +248,18 @@ def _shipped_recordings(recipe: MapRecipe) -> Iterator[tuple[str, int, TrafficCo
         yield MIXED_FILE, 0, mixed, STANDARD_DURATION
         dense = mixed.model_copy(update={"max_vehicles": DENSE_VEHICLES})
         yield DENSE_FILE, 0, dense, DENSE_DURATION
+        tested = dense.model_copy(update={"seed": TEST_TRAFFIC[0]})
+        yield DENSE_TEST_FILE, 0, tested, DENSE_TEST_DURATION
     for drivers, config in _LOST_DRIVERS.get(recipe.name, {}).items():
         own = config.model_copy(update={"drivers": drivers})
         yield drivers_file(drivers), 0, own, STANDARD_DURATION
         tested = own.model_copy(update={"seed": TEST_TRAFFIC[0]})
-        yield drivers_file(drivers, TEST_TRAFFIC[0]), 0, tested, 2.0 * TEST_DURATION
+        yield drivers_file(drivers, TEST_TRAFFIC[0]), 0, tested, TEST_DURATION
     for seed in TEST_TRAFFIC if recipe.name in _TESTED else ():
-        yield town_traffic_file(0, seed), 0, TrafficConfig(seed=seed), 2.0 * TEST_DURATION
+        yield town_traffic_file(0, seed), 0, TrafficConfig(seed=seed), TEST_DURATION
     for town in TEST_TOWNS if recipe.name in _WITH_TOWNS else ():
         seed = TEST_TRAFFIC[0]
-        yield town_traffic_file(town, seed), town, TrafficConfig(seed=seed), TEST_DURATION
+        yield town_traffic_file(town, seed), town, TrafficConfig(seed=seed), 0.5 * TEST_DURATION
 
 
 def _report(path: Path, what: str) -> None:

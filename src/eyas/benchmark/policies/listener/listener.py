@@ -20,7 +20,7 @@ from eyas.benchmark.policies.tracker.metadata import TRACKER, env_as_trained
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
 from eyas.benchmark.policies.tracker.steering import Steering, turned
 from eyas.engine.core.config import validated
-from eyas.engine.policies.policy import Decision, PolicyInput, Start
+from eyas.engine.policies.policy import COME_BACK, Decision, Instruction, PolicyInput, Start
 from eyas.engine.targets.grammar.attributes import claim_of
 from eyas.engine.targets.grammar.claims import Claim
 
@@ -58,19 +58,22 @@ class Listener:
     def begin(self, start: Start) -> None:
         """Remember what each is told: N episodes begin."""
         count = len(start.seeds)
-        told = start.told
+        self._told = told = start.told
         self._claims = [
             None if told is None else claim_of(told.attributes[row]) for row in range(count)
         ]
         self._seen = [Candidates() for _ in range(count)]
         self._steering = Steering(count, self.env, self._ground, self.settings.gain)
         self._time = np.zeros(count)
+        self._new = np.ones(count, np.bool_)  # Whether no picture was seen since the words came
+        self._home = np.zeros((count, 2))  # Where each began, east and north [m]
         self._pose = np.zeros((count, 3))
         """Where each was at its first look, east and north [m], and its heading [rad]."""
 
     def act(self, sight: PolicyInput) -> Decision:
         """Look, and fly to where the targets should be."""
         actions = np.zeros((len(self._claims), 4))
+        self._listen(sight.told)
         told = np.array([claim is not None for claim in self._claims], np.bool_)
         rows = np.flatnonzero(sight.deciding & told)
         if not len(rows):
@@ -91,6 +94,17 @@ class Listener:
             actions[rows[chosen], :2] = ahead
         return Decision(actions)
 
+    def _listen(self, told: Instruction | None) -> None:
+        """Choose anew where the words are others; keep the target where they name none."""
+        if told is None or self._told is None or told is self._told:
+            return
+        for row, (new, old) in enumerate(zip(told.words, self._told.words, strict=True)):
+            claim = claim_of(told.attributes[row])
+            if new != old and claim is not None:
+                self._claims[row], self._seen[row] = claim, Candidates()
+                self._time[row], self._new[row] = 0.0, True
+        self._told = told
+
     def _look(self, row: int, found: Detections, pose: tuple[Floats, Floats], since: float) -> None:
         """Take what one drone sees, and choose its target when it has looked for long enough."""
         place, yaw = pose
@@ -102,8 +116,9 @@ class Listener:
         double = np.stack((-found.heading[:, 2], found.heading[:, 3]), axis=1)
         double = turned(double, 2.0 * every)
         mine = self._seen[row]
-        if not since:
-            self._pose[row] = *place[0], yaw[0]
+        if self._new[row]:
+            self._pose[row], self._new[row] = (*place[0], yaw[0]), False
+            self._home[row] = self._pose[row, :2] if not since else self._home[row]
         self._time[row] += since
         mine.look(found, where, np.concatenate((single, double), axis=1), since)
         claim = self._claims[row]
@@ -127,6 +142,10 @@ class Listener:
         places, velocities = [], []
         for row in rows.tolist():
             mine = self._seen[row]
+            if self._told is not None and self._told.words[row] == COME_BACK:
+                places.append(self._home[row])
+                velocities.append(np.zeros(2))
+                continue
             assert mine.target is not None
             places.append(mine.motion.place[mine.target])
             velocities.append(mine.motion.velocity[mine.target])

@@ -106,10 +106,10 @@ def _episodes(plan: EvaluationPlan, rules: Protocol, seed: int, count: int) -> l
     """Return fresh episodes in the plan's places; towns of tests are others of the same map."""
     names = plan.maps
     if rules.elsewhere and rules.recordings != plan.rules.recordings:
-        towns = [Place(name, "", "").town[0] for name in plan.maps]
+        towns = [Place(name, "", "").town for name in plan.maps]
         names = tuple(
-            f"{town}:{_test_seed()}" if town in MAPS.built_in else name
-            for town, name in zip(towns, plan.maps, strict=True)
+            f"{town}:{_test_seed()}" if town in MAPS.built_in or seed >= TEST_SEEDS else name
+            for (town, seed), name in zip(towns, plan.maps, strict=True)
         )
     places = [
         Place(name, weather, target)

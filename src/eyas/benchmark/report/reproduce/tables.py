@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 from eyas.benchmark.episodes.setting_out import AT_REST, AT_SPEED
 from eyas.benchmark.plan.plan import EvaluationPlan
 from eyas.benchmark.policies.shipped import shipped_names
-from eyas.benchmark.policies.table import fingerprint
+from eyas.benchmark.policies.table import WAITERS, fingerprint
+from eyas.benchmark.protocols.mission import STAGES
 from eyas.engine.core.config import Config, validated
 from eyas.engine.core.errors import UnknownNameError
 
@@ -142,6 +143,39 @@ _RECOVERED = ("recovered", "recovery_time", "followed_wrong", "nt2f", "tsr")
 _BY_LENGTH = ("recovered", "recovered_2s", "recovered_5s", "recovered_10s", "recovered_15s")
 _SEERS = ("hover", "sighted", "constant-velocity")
 _SHORT = (*_SEERS, "fast", "eyas")
+_KEPT = ("kept", "tsr", "losses_per_hour", "found_again")
+_ENDS: tuple[tuple[str, str, tuple[str, ...], tuple[str, ...]], ...] = (
+    ("long-10", "lasting", ("hover", "constant-velocity", "sighted", "fast", "eyas"), _KEPT),
+    ("gimbal", "lasting", ("hover", "gimbal-servo", "sighted", "eyas"), _KEPT),
+    (
+        "recover-wide",
+        "recover",
+        ("hover", *WAITERS, "constant-velocity", "road-graph", "sighted", "eyas"),
+        ("recovered", "recovery_time", "followed_wrong", "tsr"),
+    ),
+    ("mission", "mission", ("hover", "sighted", "eyas-words"), ("score", *STAGES)),
+    ("corrupted", "corrupted", ("hover", "fast", "eyas"), ("tsr", "fall", "flawless", "seen")),
+    (
+        "crowd",
+        "crowd",
+        ("hover", "servo", "sighted", "eyas"),
+        ("kept_share", "identity_switches", "kept", "tsr"),
+    ),
+    (
+        "coat",
+        "crowd",
+        ("hover", "sighted", "eyas"),
+        ("kept_share", "kept_before", "kept_after", "tsr"),
+    ),
+    (
+        "pair",
+        "pair",
+        ("hover", "sighted", "relay", "eyas"),
+        ("team_seen", "alone_seen", "handed_over", "tsr"),
+    ),
+)
+"""Tables with the floor, the ceiling and the best policy that ships, in one set of episodes."""
+
 _FLIGHT_CONTROLLER: dict[str, Any] = {
     "tracker": {"supervised": False, "flight": "mended"},
     "start": {"velocity": "target"},
@@ -238,6 +272,8 @@ def _long_flights() -> Iterator[Table]:
         seeds = FLOWN_SETS if name == "recover" else FLOWN_SETS[:1]
         rows += _flown(name, ("eyas",), seeds=seeds)
         yield Table(name, f"protocols/{page}.md", f"`{name}`", columns, rows)
+    for own, where, flyers, figures in _ENDS:
+        yield Table(own, f"protocols/{where}.md", f"`{own}`", figures, _flown(own, flyers))
     yield Table(
         "flown",
         "protocols/flown.md",

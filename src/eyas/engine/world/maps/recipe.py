@@ -38,6 +38,8 @@ MIXED_FILE = "traffic-mixed.npz"
 DENSE_FILE = "traffic-dense.npz"
 """File in a city's package with the same classes in dense traffic, eight times as many."""
 
+DENSE_TEST_FILE = "traffic-dense-test.npz"  # The same of a seed that is kept for tests
+
 SIGNALS_TRAFFIC_FILE = "traffic-signals.npz"
 """File in a map's package with the canonical recording of drivers who obey its traffic lights."""
 
