@@ -12,6 +12,7 @@ from typing import Any
 
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
+from eyas.lanes import exact
 
 ENDINGS = (".yaml", ".yml", ".xml")
 
@@ -52,7 +53,7 @@ def read_calibration(path: Path) -> tuple[dict[str, Any], list[str]]:
     if abs(fy / fx - 1.0) > _SQUARE:
         notes.append(f"pixels are square here: fy {fy:g} counts as fx {fx:g}")
     lens |= _distortion(path, text, notes)
-    view = 2.0 * math.atan(0.5 * width / fx)
+    view = 2.0 * float(exact.atan(0.5 * width / fx))
     return {"width": width, "height": height, "field_of_view": round(view, 6), "lens": lens}, notes
 
 
