@@ -151,6 +151,7 @@ _OUTPUT = "what this run, or an earlier one into the same folder, has written"
 _CODE = "a file that is code, and is read only if its user says so"
 _SOCKET = "a socket, tested in the servers' part"
 OWN = {
+    "lanes.text_index:TextIndex.json_of": _PACKAGE,
     "dat.shim:_listen_early": "settings, of which one number is looked for; they are read later",
     "engine.core.identity.build:_digest_of": _PACKAGE,
     "engine.core.cache.array_file:map_arrays": _CACHE,

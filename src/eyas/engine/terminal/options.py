@@ -32,9 +32,9 @@ Overrides = Annotated[
     ),
 ]
 POLICIES = (
-    "random, hover, follow (an oracle), sighted, constant-velocity, wait-45, road-graph, relay, "
-    "servo, gimbal-servo, attribute-servo, salient-servo, csrt, kcf, mosse, medianflow, nano, "
-    "stay, eyas, eyas-flown, eyas-words, fast"
+    "random, hover, follow (an oracle), sighted, constant-velocity, wait-20, wait-45, wait-90, "
+    "road-graph, relay, servo, gimbal-servo, attribute-servo, salient-servo, csrt, kcf, mosse, "
+    "medianflow, nano, stay, eyas, eyas-flown, eyas-words, fast"
 )
 """The policies that come with Eyas, for help, which must not load what knows them; a test holds
 the two equal."""
