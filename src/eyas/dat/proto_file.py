@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.dat.proto_parser import ProtoNode, parsed
+from eyas.dat.proto_script import Limits
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
 from eyas.lanes import exact
@@ -114,6 +115,7 @@ class _Walk:
         self._mesh = mesh
         self._triangles = self._visited = self._parsed = 0
         self._texts: dict[Path, str] = {}
+        self._limits = Limits()
 
     def read(self, path: Path) -> None:
         """Add what a file shows."""
@@ -129,7 +131,7 @@ class _Walk:
         if depth and self._parsed > _MOST_READ:
             raise ValueError("its PROTOs are too large together, or name each other without end")
         try:
-            proto = parsed(self._texts[path], given)
+            proto = parsed(self._texts[path], given, self._limits)
         except ValueError as error:
             raise ValueError(f"{path.name}: {error}" if depth else str(error)) from None
         self._visit(proto.body, _Place(path, proto.externs, turn, origin), depth + 1)
