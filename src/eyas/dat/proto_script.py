@@ -45,7 +45,7 @@ def shown(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.0f}" if abs(value) < 1e15 and value == math.floor(value) else repr(value)
     if value is None:
-        raise ValueError("its template puts out a value that is not there")
+        return "NULL"
     raise ValueError("its template puts out a list or a node, which is not read")
 
 
@@ -242,7 +242,8 @@ def names_of(limits: Limits, *, lua: bool) -> dict[str, object]:
         "math": _MATHS | {
             "pi": math.pi, "huge": math.inf, "fmod": _of(math.fmod),
             "atan": _of(lambda a, b=1.0: exact.atan2(a, b)), "atan2": _of(exact.atan2),
-            "rad": _of(lambda a: a * (math.pi / 180.0)), "deg": _of(lambda a: a * (180.0 / math.pi)),
+            "rad": _of(lambda a: a * (math.pi / 180.0)),
+            "deg": _of(lambda a: a * (180.0 / math.pi)),
             "random": lambda *ends: chance.integer(*ends) if ends else chance.real(),
             "randomseed": chance.seed,
         },
@@ -250,6 +251,7 @@ def names_of(limits: Limits, *, lua: bool) -> dict[str, object]:
         "table": {
             "insert": lambda table, *values: _insert(limits, table, *values),
             "getn": length,
+            "maxn": length,
             "concat": lambda table, *between: _lists(limits)["join"](
                 [value for _, value in in_order(table)], *between or ("",)
             ),
@@ -280,13 +282,20 @@ def _script_texts(limits: Limits) -> dict[str, Function]:
         limits.spend(len(text) * max(number(count), 0.0))
         return text * int(number(count))
 
+    def replaced(text: str, old: object, new: object) -> str:
+        """Return a text with another in the place of a part, or of runs of blanks: `/\\s+/g`."""
+        put = shown(new)[:100]
+        if isinstance(old, re.Pattern):
+            return limits.text([old.sub(lambda _: put, text)])
+        return limits.text([text.replace(shown(old), put, 1)])
+
     return {
         "split": split, "repeat": times, "slice": _slice, "substring": _slice, "trim": str.strip,
         "toLowerCase": str.lower, "toUpperCase": str.upper, "startsWith": str.startswith,
         "endsWith": str.endswith, "includes": str.__contains__, "toString": str,
         "indexOf": lambda text, part: float(text.find(part)),
         "charAt": lambda text, at=0.0: text[int(at) : int(at) + 1],
-        "replace": lambda text, old, new: limits.text([text.replace(old, new[:1000], 1)]),
+        "replace": replaced,
     }  # fmt: skip
 
 

@@ -36,7 +36,7 @@ _QUOTED = r'"(?:[^"\\\n]|\\.)*"|' + r"'(?:[^'\\\n]|\\.)*'"
 _JAVASCRIPT = re.compile(
     _TOKEN.format(
         r"//[^\n]*|/\*(?:[\s\S]*?\*/|[\s\S]*)",
-        _QUOTED + r"|`(?:[^`\\]|\\[\s\S])*`",
+        _QUOTED + r"|`(?:[^`\\]|\\[\s\S])*`|/\\s\+?/g",
         r"===|!==|\*\*|=>|\+\+|--|&&|\|\||\?\?|[=!<>+\-*/%]=|[-+*/%=<>!?:;,.(){}\[\]]",
     )
 )
@@ -759,6 +759,8 @@ class _Parser:
         return _constant(word), self._expression()
 
     def _text(self, word: str) -> Get:
+        if word[0] == "/":
+            return _constant(re.compile(word[1:-2]))
         body = re.sub(
             r"\\(.)", lambda found: _ESCAPES.get(found[1], found[1]), word[1:-1], flags=re.DOTALL
         )
@@ -784,7 +786,7 @@ class _Parser:
             kind, word = self._tokens[self._at]
             if kind == "text" and self._lua and word[0] != "[":  # f"..."
                 self._at += 1
-                term = self._call(term[0], [self._text(word)]), None
+                term = self._call(term[0], [self._text(word)], word), None
             elif self._take("."):
                 name = self._name()
                 term = (
@@ -801,18 +803,19 @@ class _Parser:
                 self._need("]")
                 term = self._member(term[0], key)
             elif self._take("("):
-                term = self._call(term[0], self._values(")")), None
+                named = self._tokens[self._at - 2][1]
+                term = self._call(term[0], self._values(")"), named), None
             elif not self._lua and (step := self._take("++", "--")):
                 term = self._step(term, step, before=False), None
             else:
                 return term
 
-    def _call(self, function: Get, values: list[Get]) -> Get:
+    def _call(self, function: Get, values: list[Get], named: str) -> Get:
         def run(scope: _Scope) -> object:
             self._limits.spend(len(values))
             called = function(scope)
             if not callable(called):
-                raise ValueError("its template calls what is not read, or no function")
+                raise ValueError(f"its template calls {named!r:.40}, which is not read")
             return called(*[value(scope) for value in values])
 
         return run
