@@ -16,6 +16,7 @@ from eyas.dat.proto_parser import ProtoNode, parsed
 from eyas.dat.proto_script import Limits
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
+from eyas.engine.custom import solids
 from eyas.engine.custom.lookup import found_file
 from eyas.lanes import exact
 
@@ -27,7 +28,6 @@ _MOST_PARTS, _MOST_TRIANGLES = 5000, 1_000_000
 _MOST_READ = 64 << 20
 """Largest content of all PROTOs together, where one is read again for each node [bytes]."""
 _LARGEST = 1e9  # Largest number of a shape [m]
-_ROUND = 24  # Number of sides of what is round
 _PLAIN = (0.62, 0.62, 0.62)  # sRGB of what has no colour
 _INSIDE = (
     "children", "endPoint", "device", "value", "slowHelix", "fastHelix", "animatedGeometries",
@@ -35,15 +35,14 @@ _INSIDE = (
 """Fields in which there may be shapes; not `boundingObject`, which is not drawn."""
 _PLAIN_NODES = ("Appearance", "PBRAppearance", *GEOMETRY)  # Of shapes; others may be PROTOs
 _COLOURS = ("diffuseColor", "baseColor", "colorOverride")  # Fields of appearances and materials
-_Z_UP = 2022  # Year of the Webots from which on z is up
-_OLD_AXES = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-"""Our axes by those of before: -z ahead, -x left, y up."""
+_Z_UP = 2022  # Year of the Webots from which on z is up, and the axis of what is round
 _NODES = frozenset(
     "Accelerometer Altimeter BallJoint Billboard Brake Camera Charger Compass Connector "
     "DifferentialWheels Display DistanceSensor Emitter GPS Group Gyro Hinge2Joint "
-    "Hinge2JointWithBacklash HingeJoint HingeJointWithBacklash InertialUnit LED Lidar LightSensor LinearMotor Microphone Muscle Pen PointLight Pose "
-    "PositionSensor Propeller Radar RangeFinder Receiver Robot RotationalMotor Servo SliderJoint "
-    "Slot Solid SolidReference Speaker SpotLight Supervisor TouchSensor Track TrackWheel Transform "
+    "Hinge2JointWithBacklash HingeJoint HingeJointWithBacklash InertialUnit LED Lidar "
+    "LightSensor LinearMotor Microphone Muscle Pen PointLight Pose PositionSensor Propeller "
+    "Radar RangeFinder Receiver Robot RotationalMotor Servo SliderJoint Slot Solid "
+    "SolidReference Speaker SpotLight Supervisor TouchSensor Track TrackWheel Transform "
     "VacuumGripper".split()
 )
 """Webots' own nodes that show nothing but what is inside them."""
@@ -52,7 +51,7 @@ Floats = NDArray[np.float64]
 Faces = NDArray[np.int64]
 Part = tuple[Floats, Faces, Floats]
 """Points [m], shape (V, 3), triangles, shape (T, 3), and sRGB of each, shape (T, 3)."""
-Solid = tuple[Floats, Faces]
+Solid = solids.Solid
 
 
 def read_proto(path: Path, mesh: Callable[[Path], Part]) -> tuple[list[Part], str]:
@@ -78,7 +77,8 @@ def read_proto(path: Path, mesh: Callable[[Path], Part]) -> tuple[list[Part], st
             f"{path}: no geometry that can be read{told}; allowed: {', '.join(GEOMETRY)} in Shape "
             "nodes, and CadShape"
         )
-    return walk.parts, left_out
+    old = "made before Webots R2022a: if y is up in it, custom.up=y stands it upright"
+    return walk.parts, "; ".join(filter(None, (left_out, old if walk.old else "")))
 
 
 class _Place:
@@ -131,15 +131,13 @@ class _Walk:
         self._mesh = mesh
         self._triangles = self._visited = self._parsed = 0
         self._texts: dict[Path, str] = {}
-        self._missing = 0
+        self._missing, self.old = 0, False
         self._limits = Limits()
 
     def read(self, path: Path) -> None:
         """Add what a file shows."""
         body, at = self._opened(path, {}, _Place(path, {}, np.eye(3), np.zeros(3)), 0)
-        if at.year < _Z_UP:
-            at.turn = _OLD_AXES
-            self.left_out["axes (y is up before R2022a; ahead is where -z was: custom.turn)"] += 1
+        self.old = at.year < _Z_UP
         self._visit(body, at, 1)
         if self._missing > len(self.parts):
             raise ValueError("more than half of its meshes are missing: " + _counted(self.left_out))
@@ -234,8 +232,8 @@ class _Walk:
             return self._mesh(found)
         self._missing += 1
         name = str(url).rpartition("/")[2]
-        webots = " of Webots: WEBOTS_HOME" if "webots" in str(url).partition("/R20")[0] else ""
-        self.left_out[f"{name:.60} (no such file{webots})"] += 1
+        why = ", see WEBOTS_HOME" if "webots" in str(url).partition("/R20")[0] else ", on the web"
+        self.left_out[f"{name:.60} (no such file{why if '://' in str(url) else ''})"] += 1
         return None
 
 
@@ -285,64 +283,6 @@ def _colour(appearance: ProtoNode) -> tuple[float, float, float] | None:
     return red, green, blue
 
 
-def _box(node: ProtoNode) -> Solid:
-    half = 0.5 * _vector(node, "size", (0.1, 0.1, 0.1))
-    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)
-    quads = np.array(
-        [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-    )
-    return signs * half, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-
-
-def _turned(profile: Sequence[tuple[float, float]]) -> Solid:
-    """Return a solid of revolution about z from radii and heights, the lowest first."""
-    angle = 2.0 * math.pi * np.arange(_ROUND) / _ROUND
-    ring = np.stack([exact.cos(angle), exact.sin(angle)], axis=-1)
-    points = [np.column_stack([r * ring, np.full(_ROUND, z)]) for r, z in profile]
-    here = np.arange(_ROUND)
-    after = (here + 1) % _ROUND
-    faces = []
-    for level in range(len(profile) - 1):
-        low, high = level * _ROUND, (level + 1) * _ROUND
-        if profile[level][0] > 0.0:
-            faces.append(np.column_stack([low + here, low + after, high + after]))
-        if profile[level + 1][0] > 0.0:
-            faces.append(np.column_stack([low + here, high + after, high + here]))
-    return np.concatenate(points), np.concatenate(faces)
-
-
-def _cylinder(node: ProtoNode) -> Solid:
-    radius, half = _number(node, "radius", 1.0), 0.5 * _number(node, "height", 2.0)
-    return _turned([(0.0, -half), (radius, -half), (radius, half), (0.0, half)])
-
-
-def _cone(node: ProtoNode) -> Solid:
-    radius, half = _number(node, "bottomRadius", 1.0), 0.5 * _number(node, "height", 2.0)
-    return _turned([(0.0, -half), (radius, -half), (0.0, half)])
-
-
-def _arc(radius: float, middle: float, first: float, last: float) -> list[tuple[float, float]]:
-    """Return points of a circle between two heights above its middle, as angles [rad]."""
-    angles = np.linspace(first, last, _ROUND // 2 + 1)
-    return [(radius * max(exact.cos(a), 0.0), middle + radius * exact.sin(a)) for a in angles]
-
-
-def _ended(profile: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    return [(0.0, profile[0][1]), *profile[1:-1], (0.0, profile[-1][1])]
-
-
-def _sphere(node: ProtoNode) -> Solid:
-    quarter = 0.5 * math.pi
-    return _turned(_ended(_arc(_number(node, "radius", 1.0), 0.0, -quarter, quarter)))
-
-
-def _capsule(node: ProtoNode) -> Solid:
-    radius, half = _number(node, "radius", 1.0), 0.5 * _number(node, "height", 2.0)
-    quarter = 0.5 * math.pi
-    low, high = _arc(radius, -half, -quarter, 0.0), _arc(radius, half, 0.0, quarter)
-    return _turned(_ended([*low, *high]))
-
-
 def _face_set(node: ProtoNode) -> Solid:
     """Return the triangles of polygons, cut like fans from their first corners."""
     coord = node.fields.get("coord")
@@ -367,10 +307,14 @@ def _face_set(node: ProtoNode) -> Solid:
 
 
 _SOLIDS: dict[str, Callable[[ProtoNode], Solid]] = {
-    "Box": _box,
-    "Cylinder": _cylinder,
-    "Cone": _cone,
-    "Sphere": _sphere,
-    "Capsule": _capsule,
+    "Box": lambda node: solids.box(_vector(node, "size", (0.1, 0.1, 0.1))),
+    "Cylinder": lambda node: solids.cylinder(*_round(node, "radius")),
+    "Cone": lambda node: solids.cone(*_round(node, "bottomRadius")),
+    "Sphere": lambda node: solids.sphere(_number(node, "radius", 1.0)),
+    "Capsule": lambda node: solids.capsule(*_round(node, "radius")),
     "IndexedFaceSet": _face_set,
 }
+
+
+def _round(node: ProtoNode, radius: str) -> tuple[float, float]:
+    return _number(node, radius, 1.0), _number(node, "height", 2.0)

@@ -283,7 +283,7 @@ def _script_texts(limits: Limits) -> dict[str, Function]:
         return text * int(number(count))
 
     def replaced(text: str, old: object, new: object) -> str:
-        """Return a text with another in the place of a part, or of runs of blanks: `/\\s+/g`."""
+        """Return a text with another in the place of a part, or of all blanks."""
         put = shown(new)[:100]
         if isinstance(old, re.Pattern):
             return limits.text([old.sub(lambda _: put, text)])

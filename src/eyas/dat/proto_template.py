@@ -114,7 +114,10 @@ def filled_in(text: str, fields: Mapping[str, object], limits: Limits) -> str:
     """
     begin = _OPENED.search(text)
     assert begin is not None
-    lua = "template language: javascript" not in text[: begin.start()].lower()
+    named = re.search(
+        r"template ?language: *(lua|javascript)", text[: begin.start()], re.IGNORECASE
+    )
+    lua = begin[0][1] == "{" if named is None else named[1].lower() == "lua"
     known = _as_tables({**fields}) if lua else {**fields}
     parser = _Parser(list(_tokens(text[begin.start() :], lua=lua)), limits, lua=lua)
     try:

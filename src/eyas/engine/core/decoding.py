@@ -96,7 +96,7 @@ def decoded_xml(content: bytes) -> ElementTree.Element:
     if re.search(rb"<!\s*(DOCTYPE|ENTITY)", content) or b"\0" in content:
         raise ValueError("it has a DOCTYPE, an ENTITY or a zero byte, which is not read")
     try:
-        return ElementTree.fromstring(content)
+        return ElementTree.fromstring(content.lstrip())  # the declaration is often below a line
     except (ElementTree.ParseError, ValueError, LookupError) as error:
         raise ValueError(f"not XML: {error}") from None
 

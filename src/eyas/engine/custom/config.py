@@ -30,8 +30,8 @@ class CustomConfig(Config):
     """
 
     mesh: Text | None = None
-    """File of its shape: glTF, GLB, COLLADA, OBJ, STL or PLY (extra `mesh`), a Webots `.proto`, or a
-    URDF."""
+    """File of its shape: glTF, GLB, COLLADA, OBJ, STL or PLY (extra `mesh`), a Webots `.proto`, or
+    a URDF."""
     path: Annotated[Text | None, NAMES_CODE] = None
     """Class of the target, `package.module:Class`, see `eyas.engine.custom.own.OwnTarget`."""
     trajectory: Text | Annotated[tuple[Text, ...], Field(min_length=1, max_length=64)] | None = None

@@ -14,9 +14,9 @@ _SCHEME = re.compile(r"(\w+)://")
 def found_file(path: Path, address: str) -> Path | None:
     """Return the file that an address stands for; None if it is not on this machine.
 
-    An address of Webots' own is one in the folder that the environment variable `WEBOTS_HOME` names.
-    Of `package://`, of other schemes, and of a path of another machine, as much as is there is
-    looked for in the folders above the file.
+    An address of Webots' own is one in the folder that `WEBOTS_HOME` of the environment names. Of
+    `package://`, of other schemes, and of a path of another machine, as much as is there is looked
+    for in the folders above the file.
 
     Args:
         path: The file that names it.

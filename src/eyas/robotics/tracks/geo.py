@@ -7,7 +7,6 @@ them.
 """
 
 import io
-import re
 import zipfile
 import zlib
 from collections.abc import Iterator
