@@ -10,10 +10,12 @@ import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
+import numpy as np
+
 from eyas.lanes import exact
 
-_MOST_STEPS = 3_000_000
-"""Steps of all templates of a shape together: seconds, a hundred times what real ones take."""
+_MOST_STEPS = 1_000_000
+"""Steps of all templates of a shape together: seconds, ten times what real ones take."""
 
 Function = Callable[..., object]
 
@@ -21,8 +23,8 @@ Function = Callable[..., object]
 class Limits:
     """Counts what all templates of a shape do together."""
 
-    def __init__(self) -> None:
-        self._left = float(_MOST_STEPS)
+    def __init__(self, most: int = _MOST_STEPS) -> None:
+        self._left = float(most)
 
     def spend(self, steps: float = 1.0) -> None:
         """Count steps; `ValueError` once there were too many."""
@@ -32,8 +34,21 @@ class Limits:
 
     def text(self, parts: list[str]) -> str:
         """Return texts as one, whose length counts."""
-        self.spend(sum(map(len, parts)) / 16.0)
+        self.weigh(*parts)
         return "".join(parts)
+
+    def weigh(self, *values: object) -> None:
+        """Count what a function that looks at all of some values does."""
+        self.spend(sum(len(one) for one in values if isinstance(one, str | list | dict)) / 16.0)
+
+    def weighed(self, function: Function) -> Function:
+        """Return a function that counts how large its arguments are."""
+
+        def call(*values: object) -> object:
+            self.weigh(*values)
+            return function(*values)
+
+        return call
 
 
 def shown(value: object) -> str:
@@ -70,7 +85,8 @@ def divided(a: float, b: float) -> float:
 
 def power(a: float, b: float) -> float:
     """Return a power."""
-    return float(exact.power(a, int(b) if b == math.floor(b) and abs(b) < 1e6 else b))
+    with np.errstate(all="ignore"):  # what is too large is infinite
+        return float(exact.power(a, int(b) if abs(b) < 1e6 and b == math.floor(b) else b))
 
 
 ARITHMETIC: dict[str, Callable[[float, float], Any]] = {
@@ -96,7 +112,12 @@ COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
 
 def _of(function: Callable[..., Any]) -> Function:
     """Return a function of numbers as one of values."""
-    return lambda *values: float(function(*map(number, values)))
+
+    def call(*values: object) -> float:
+        with np.errstate(all="ignore"):
+            return float(function(*map(number, values)))
+
+    return call
 
 
 def _formatted(pattern: str, *values: object) -> str:
@@ -146,8 +167,8 @@ def _to_number(text: object) -> float | None:
 
 
 def _insert(limits: Limits, table: dict[object, object], *values: object) -> None:
-    limits.spend(len(table))
     if len(values) == 2:
+        limits.spend(len(table))
         at, last = number(values[0]), length(table)
         for k in range(int(last), int(at) - 1, -1):
             table[k + 1.0] = table[float(k)]
@@ -163,8 +184,8 @@ def length(value: object) -> float:
     if not isinstance(value, dict):
         raise ValueError("its template counts what is no list")
     count = len(value)
-    while count and float(count) not in value:
-        count -= 1
+    if float(count) not in value and count:  # it has names, too
+        count = next(k for k in range(count + 1) if float(k + 1) not in value)
     return float(count)
 
 
@@ -224,7 +245,10 @@ def names_of(limits: Limits, *, lua: bool) -> dict[str, object]:
             "parseInt": lambda text, *_: math.trunc(_parsed(text)) + 0.0, "parseFloat": _parsed,
             "Number": _parsed, "String": shown, "isNaN": lambda a: math.isnan(number(a)),
             "Array": {"isArray": lambda a: isinstance(a, list)},
-            "Object": {"keys": list, "values": lambda a: list(a.values())},
+            "Object": {
+                "keys": limits.weighed(list),
+                "values": limits.weighed(lambda a: list(a.values())),
+            },
         }  # fmt: skip
 
     def items(table: dict[object, object]) -> Iterator[tuple[object, object]]:
@@ -256,7 +280,8 @@ def names_of(limits: Limits, *, lua: bool) -> dict[str, object]:
                 [value for _, value in in_order(table)], *between or ("",)
             ),
         },
-        "pairs": items, "ipairs": in_order, "tostring": shown, "tonumber": _to_number,
+        "pairs": limits.weighed(items), "ipairs": in_order,
+        "tostring": shown, "tonumber": _to_number,
         "print": silent, "io": {"stderr": {"write": silent}, "write": silent},
         "require": module,
     }  # fmt: skip
@@ -267,10 +292,11 @@ def _lua_texts(limits: Limits) -> dict[str, Function]:
         limits.spend(len(text) * max(number(count), 0.0))
         return text * int(number(count))
 
-    return {
+    functions: dict[str, Function] = {
         "format": _formatted, "gmatch": _words, "sub": _sub, "len": length, "rep": times,
         "lower": str.lower, "upper": str.upper,
     }  # fmt: skip
+    return {name: limits.weighed(function) for name, function in functions.items()}
 
 
 def _script_texts(limits: Limits) -> dict[str, Function]:
@@ -335,10 +361,14 @@ def methods_of(limits: Limits, *, lua: bool) -> dict[type, dict[str, Function]]:
     """Return the methods of values, by their types."""
     if lua:
         return {str: _lua_texts(limits)}
+    texts, lists = _script_texts(limits), _lists(limits)
     rounded: Function = lambda value, digits=0.0: f"{value:.{int(min(digits, 20.0))}f}"  # noqa: E731
     return {
-        str: _script_texts(limits),
-        list: _lists(limits),
+        str: {name: limits.weighed(function) for name, function in texts.items()},
+        list: {
+            name: function if name in ("push", "pop") else limits.weighed(function)
+            for name, function in lists.items()
+        },
         float: {"toFixed": rounded, "toString": shown},
         bool: {"toString": shown},
     }

@@ -26,6 +26,7 @@ from eyas.dat.proto_script import (
 _OPENED = re.compile("%[<{]=?")
 _LARGEST_SCRIPT = 1 << 20  # [characters]
 _LARGEST_TEXT = 32 << 20  # Largest text that comes out [characters]
+_PARAMETERS = 64  # Largest number of words of a function's parameters in parentheses
 _MOST_CALLS = 24  # Largest nesting of calls of the script's own functions
 
 _TOKEN = (
@@ -184,7 +185,10 @@ class _Parser:
     # Tokens.
 
     def _fail(self) -> NoReturn:
-        raise ValueError(f"its template has {self._tokens[self._at][1][:40]!r}, which is not read")
+        kind, word = self._tokens[self._at]
+        if kind in ("put", "out", "close", "end"):
+            raise ValueError("its template breaks off before it is whole")
+        raise ValueError(f"its template has {word[:40]!r}, which is not read")
 
     def _is(self, *words: str) -> bool:
         kind, word = self._tokens[self._at]
@@ -298,9 +302,9 @@ class _Parser:
             values.append(self._expression())
         return values
 
-    @staticmethod
-    def _assigned(targets: list[Set], values: list[Get]) -> Get:
+    def _assigned(self, targets: list[Set], values: list[Get]) -> Get:
         def run(scope: _Scope) -> None:
+            self._limits.spend(len(targets))
             found = [value(scope) for value in values]
             for k, put in enumerate(targets):
                 put(scope, found[k] if k < len(found) else None)
@@ -424,6 +428,7 @@ class _Parser:
 
         def run(scope: _Scope) -> None:
             found = values(scope)
+            self._limits.weigh(found)
             if not isinstance(found, list | str | Iterator):
                 raise ValueError("its template loops over what is no list")
             for one in found:
@@ -448,7 +453,7 @@ class _Parser:
             self._need(";")
         test: Get = (lambda _: True) if self._is(";") else self._expression()
         self._need(";")
-        steps = [] if self._is(")") else self._several()
+        steps = [] if self._is(")") else [self._counted(one) for one in self._several()]
         self._need(")")
         body = self._block()
 
@@ -587,7 +592,13 @@ class _Parser:
 
             return chosen
         if word in ("===", "!=="):
-            return lambda scope: same(left(scope), right(scope)) == (word == "===")
+
+            def equal(scope: _Scope) -> bool:
+                a, b = left(scope), right(scope)
+                self._limits.weigh(a, b)
+                return same(a, b) == (word == "===")
+
+            return equal
         compare = COMPARISONS.get(word)
         compute = (
             ARITHMETIC["mod" if lua and word == "%" else word]
@@ -664,11 +675,16 @@ class _Parser:
         if word in ("!", "not"):
             return lambda scope: not self._true(value(scope))
         if word == "#":
-            return lambda scope: length(value(scope))
+            return lambda scope: self._length(value(scope))
         if word == "typeof":
             return lambda scope: _TYPES.get(type(value(scope)), "object")
         sign = -1.0 if word == "-" else 1.0
         return lambda scope: sign * number(value(scope))
+
+    def _length(self, value: object) -> float:
+        if isinstance(value, dict) and float(len(value)) not in value:
+            self._limits.weigh(value)
+        return length(value)
 
     def _step(self, term: Term, word: str, *, before: bool) -> Get:
         get, put = term
@@ -686,7 +702,8 @@ class _Parser:
     def _parenthesis(self) -> Get:
         """Read what is in parentheses, or a function with `=>`."""
         depth, after = 1, self._at
-        while depth and self._tokens[after][0] not in ("put", "end") and not self._lua:
+        last = min(len(self._tokens) - 1, self._at + _PARAMETERS)
+        while depth and after < last and not self._lua:
             depth += (self._tokens[after] == ("mark", "(")) - (self._tokens[after] == ("mark", ")"))
             after += 1
         if not depth and self._tokens[after] == ("mark", "=>"):
@@ -717,8 +734,11 @@ class _Parser:
         return values
 
     def _all_of(self, values: list[Get]) -> Get:
-        self._limits.spend(len(values))
-        return lambda scope: [value(scope) for value in values]
+        def run(scope: _Scope) -> list[object]:
+            self._limits.spend(len(values))
+            return [value(scope) for value in values]
+
+        return run
 
     def _table(self) -> Get:
         """Read an object of JavaScript, or a table of Lua."""
@@ -733,7 +753,12 @@ class _Parser:
             if not self._take(",", ";"):
                 break
         self._need("}")
-        return lambda scope: {key(scope): value(scope) for key, value in pairs}
+
+        def run(scope: _Scope) -> dict[object, object]:
+            self._limits.spend(len(pairs))
+            return {key(scope): value(scope) for key, value in pairs}
+
+        return run
 
     def _pair(self) -> tuple[Get | None, Get]:
         after = self._tokens[self._at + 1]
