@@ -646,6 +646,26 @@ def _draco(folder, chance, most):
     return of_bytes(folder / "box.bin", row.read, chance, most, huge)
 
 
+@row("meshopt")
+def _meshopt(folder, chance, most):
+    sys.path.insert(0, str(Path(__file__).parents[1] / "engine" / "custom"))
+    import base64
+
+    from test_meshopt import POINTS, TRIANGLES, gltf
+
+    header = gltf()
+    contents = [base64.b64decode(text) for text in (POINTS, TRIANGLES)]
+    for k, content in enumerate(contents):
+        header["buffers"][k]["uri"] = "packed.bin"
+        header["bufferViews"][k]["extensions"]["EXT_meshopt_compression"]["byteOffset"] = k * len(
+            contents[0]
+        )
+        header["buffers"][k]["byteLength"] = len(content)
+    (folder / "packed.bin").write_bytes(b"".join(contents))
+    row = of_mesh(folder, "a.gltf", json.dumps(header).encode(), chance, most)
+    return of_bytes(folder / "packed.bin", row.read, chance, most)
+
+
 # Policies, latencies, logs of flights.
 
 

@@ -18,11 +18,12 @@ from numpy.typing import NDArray
 from eyas.engine.core.decoding import decoded_json
 from eyas.engine.core.errors import MissingExtraError
 from eyas.engine.core.files import read_limited
+from eyas.engine.custom import meshopt
 from eyas.lanes import exact
 
 _READ = re.compile(
     "KHR_mesh_quantization|KHR_lights_punctual|KHR_materials_.*|KHR_xmp.*|EXT_texture_webp"
-    "|KHR_texture_transform|KHR_draco_mesh_compression"
+    "|KHR_texture_transform|KHR_draco_mesh_compression|EXT_meshopt_compression"
 )
 """Extensions that are read, or whose absence changes neither shape nor colour."""
 
@@ -30,7 +31,7 @@ _TYPES = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 _FLOAT = 5126  # Component type of glTF for float32
 _KINDS = {name.strip("<"): kind for kind, name in _TYPES.items()}
-_DRACO = "KHR_draco_mesh_compression"
+_DRACO, _MESHOPT = "KHR_draco_mesh_compression", "EXT_meshopt_compression"
 _DRACO_HEADER = 11  # [bytes]
 _MOST_OF_DRACO = 4_000_000  # Largest number of triangles, or vertices
 _GLB = struct.Struct("<4sIIII")
@@ -137,9 +138,12 @@ class _Mender:
             if name == "POSITION" or name.startswith("TEXCOORD")
         }
         for key in ("extensionsUsed", "extensionsRequired"):
-            if _DRACO in self._header.get(key, ()):
-                self._header[key].remove(_DRACO)
-        changed = any([*map(self._unpack, primitives), *map(self._transform, primitives)])
+            if key in self._header:
+                self._header[key] = [
+                    name for name in self._header[key] if name not in (_DRACO, _MESHOPT)
+                ]
+        changed = self._unpack_views()
+        changed |= any([*map(self._unpack, primitives), *map(self._transform, primitives)])
         for number, accessor in enumerate(accessors):
             divided = accessor.get("normalized") is True and number in coordinates
             if "sparse" in accessor or (divided and accessor["componentType"] != _FLOAT):
@@ -153,6 +157,32 @@ class _Mender:
             for key in ("normalized", "min", "max"):
                 accessor.pop(key, None)
         self._store(accessor, values)
+
+    def _unpack_views(self) -> bool:
+        """Replace the views that meshopt has packed; return whether there are any."""
+        views, size, changed = self._header.get("bufferViews", ()), 0, False
+        for view in views:
+            packed = view.get("extensions", {}).pop(_MESHOPT, None)
+            if packed is None:
+                continue
+            size += packed["count"] * packed["byteStride"]
+            if size > self._largest:
+                raise ValueError(f"its meshopt data have {size:.3g} bytes")
+            first = packed.get("byteOffset", 0)
+            data = self._buffer(packed["buffer"])[first : first + packed["byteLength"]]
+            view.update(self._new_buffer(meshopt.decoded(data, packed)), byteOffset=0)
+            changed = True
+        for number, buffer in enumerate(self._header.get("buffers", ())):
+            if number and changed and "uri" not in buffer:  # what was in place of the packed
+                buffer.update(uri="data:;base64,", byteLength=0)
+        return changed
+
+    def _new_buffer(self, data: bytes) -> dict[str, int]:
+        """Return a view of a new buffer."""
+        address = f"data:application/octet-stream;base64,{base64.b64encode(data).decode()}"
+        buffers = self._header.setdefault("buffers", [])
+        buffers.append({"byteLength": len(data), "uri": address})
+        return {"buffer": len(buffers) - 1, "byteLength": len(data)}
 
     def _unpack(self, primitive: dict[str, Any]) -> bool:
         """Replace what Draco has packed; return whether there is any."""
@@ -200,11 +230,8 @@ class _Mender:
     def _store(self, accessor: dict[str, Any], values: NDArray[Any]) -> None:
         accessor.pop("sparse", None)
         accessor["count"] = len(values)
-        data = values.tobytes()
-        address = f"data:application/octet-stream;base64,{base64.b64encode(data).decode()}"
-        buffers, views = (self._header.setdefault(key, []) for key in ("buffers", "bufferViews"))
-        buffers.append({"byteLength": len(data), "uri": address})
-        views.append({"buffer": len(buffers) - 1, "byteLength": len(data)})
+        views = self._header.setdefault("bufferViews", [])
+        views.append(self._new_buffer(values.tobytes()))
         accessor.update(bufferView=len(views) - 1, byteOffset=0)
 
     def _values(self, accessor: dict[str, Any]) -> NDArray[Any]:
