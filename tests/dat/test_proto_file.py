@@ -245,6 +245,12 @@ def test_protos_beside_it_are_read_with_the_fields_that_are_given(dog):
     assert len(shape.corners) == 12 + 12 + 4 * 4 * 24  # two boxes, two legs, two ears
 
 
+def test_protos_in_folders_inside_it_need_no_name_as_before_r2022b(dog, tmp_path):
+    (tmp_path / "parts" / "more").mkdir()
+    (tmp_path / "parts" / "more" / "Skin.proto").write_text(LEG.replace("Leg", "Skin"))
+    assert "Skin" not in read_mesh(dog).left_out
+
+
 def test_what_is_left_out_is_counted_and_named(dog, caplog):
     told = "left out, as not read: 1 Fur (a colour), 1 IndexedLineSet, 1 Skin, 1 Tail"
     assert read_mesh(dog).left_out == told

@@ -6,7 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import lru_cache
-from itertools import pairwise
+from itertools import islice, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -108,18 +108,26 @@ class _Place:
         """Return the file of another PROTO; None if it is not on this machine."""
         if not re.fullmatch(r"[\w.-]+", kind):
             return None
-        return found_file(self.path, self._externs.get(kind, f"{kind}.proto")) or _library(kind)
+        named = found_file(self.path, self._externs.get(kind, f"{kind}.proto"))
+        return named or _protos_in(self.path.parent).get(kind) or _library().get(kind)
 
 
-def _library(kind: str) -> Path | None:
-    """Return the file of a PROTO that Webots brings, in the folder `WEBOTS_HOME`."""
+def _library() -> dict[str, Path]:
+    """Return the PROTOs that Webots brings, in the folder `WEBOTS_HOME`."""
     home = os.environ.get("WEBOTS_HOME")
-    return _libraries(home).get(f"{kind}.proto") if home else None
+    return _protos_in(Path(home, "projects"), 20_000) if home else {}
 
 
-@lru_cache(maxsize=1)
-def _libraries(home: str) -> dict[str, Path]:
-    return {path.name: path for path in sorted(Path(home, "projects").rglob("*.proto"))}
+@lru_cache(maxsize=64)
+def _protos_in(folder: Path, most: int = 200) -> dict[str, Path]:
+    """Return the PROTOs in a folder and those inside it, as Webots before R2022b finds them."""
+    found: dict[str, Path] = {}
+    for where, folders, names in islice(os.walk(folder), most):
+        folders.sort()
+        for name in names:
+            if name.endswith(".proto"):
+                found.setdefault(name.removesuffix(".proto"), Path(where, name))
+    return found
 
 
 class _Walk:
@@ -232,8 +240,9 @@ class _Walk:
             return self._mesh(found)
         self._missing += 1
         name = str(url).rpartition("/")[2]
-        why = ", see WEBOTS_HOME" if "webots" in str(url).partition("/R20")[0] else ", on the web"
-        self.left_out[f"{name:.60} (no such file{why if '://' in str(url) else ''})"] += 1
+        webots = "cyberbotics/webots/" in str(url) or str(url).startswith("webots://")
+        why = ", see WEBOTS_HOME" if webots else ", on the web" if "http" in str(url)[:4] else ""
+        self.left_out[f"{name:.60} (no such file{why})"] += 1
         return None
 
 
