@@ -62,7 +62,7 @@ _LEVELS = {
 }  # fmt: skip
 """How strongly operators bind, by whether the language is Lua."""
 
-_UNARY, _MEMBER = 11, 13
+_UNARY = 11  # How strongly signs and `not` bind
 _RIGHT = ("**", "^", "..")  # Operators of which the last is computed first
 _CANONICAL = {
     "||": "or", "&&": "and", "==": "===", "!=": "!==", "~=": "!==", "^": "**",
