@@ -117,11 +117,32 @@ def test_a_mesh_beside_it_is_read_too(read, tmp_path):
     )
     shape = read(proto('Mesh { url [ "meshes/t.obj" ] }'))
     assert shape.size == pytest.approx((2.0, 3.0, 1.0))
-    with pytest.raises(EyasError, match="no such file"):
-        read(proto('Mesh { url "meshes/u.obj" }'))
-    for url in ("https://somewhere/t.obj", "webots://t.obj"):
-        with pytest.raises(EyasError, match="a file beside the PROTO"):
+    for url, why in (
+        ("meshes/u.obj", r"1 u\.obj \(no such file\)"),
+        ("https://somewhere/t.obj", r"t\.obj \(no such file, on the web\)"),
+        ("webots://t.obj", r"t\.obj \(no such file, see WEBOTS_HOME\)"),
+    ):
+        with pytest.raises(EyasError, match=f"more than half of its meshes are missing: .*{why}"):
             read(proto(f'Mesh {{ url "{url}" }}'))
+
+
+@pytest.mark.parametrize(
+    "url",
+    [
+        "webots://projects/a/t.obj",
+        "https://raw.githubusercontent.com/cyberbotics/webots/R2023b/projects/a/t.obj",
+    ],
+)
+def test_meshes_and_protos_of_webots_are_read_from_its_folder(read, tmp_path, monkeypatch, url):
+    pytest.importorskip("trimesh")
+    library = tmp_path / "webots" / "projects" / "a"
+    library.mkdir(parents=True)
+    (library / "t.obj").write_text("v 0 0 0\nv 2 0 0\nv 0 3 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\n")
+    (library / "Tail.proto").write_text(LEG.replace("Leg", "Tail"))
+    monkeypatch.setenv("WEBOTS_HOME", str(tmp_path / "webots"))
+    shape = read(f'PROTO T [] {{ Group {{ children [ CadShape {{ url "{url}" }} Tail {{ }} ] }} }}')
+    assert len(shape.corners) == 2 + 4 * 24
+    assert shape.left_out == ""
 
 
 def test_it_is_a_target(tmp_path):
@@ -138,12 +159,12 @@ def test_it_is_a_target(tmp_path):
         ("hello", "no PROTO"),
         ("PROTO X [", "cut off"),
         ("PROTO X [] { Solid { } }", "no geometry that can be read; allowed: Box, "),
-        (proto("ElevationGrid { }"), "geometry ElevationGrid; allowed: Box, "),
+        (proto("ElevationGrid { }"), r"1 ElevationGrid\); allowed: Box, "),
         (proto("Box { size 1 2 }"), r"Box\.size: 3 numbers expected"),
         (proto("Sphere { radius -1 }"), r"Sphere\.radius: a number above 0 expected"),
         (proto("IndexedFaceSet { coordIndex [ 0 1 2 ] }"), "up to -1 expected"),
         (proto("Box { size 1 2 1e999 }"), "the number 1e999 is not allowed"),
-        ("PROTO X [] { %< for >% }", "it is a template"),
+        ("PROTO X [] { %< for >% }", "its template breaks off"),
         ('PROTO X [] { Solid { name "a', "a text without its end"),
         ("PROTO X [] { Solid { children [ USE A ] } }", "USE A: no such DEF"),
         ("PROTO X [] { " + 99 * "Group { children " + "NULL", "nested more than 64 deep"),
@@ -224,6 +245,12 @@ def test_protos_beside_it_are_read_with_the_fields_that_are_given(dog):
     assert len(shape.corners) == 12 + 12 + 4 * 4 * 24  # two boxes, two legs, two ears
 
 
+def test_protos_in_folders_inside_it_need_no_name_as_before_r2022b(dog, tmp_path):
+    (tmp_path / "parts" / "more").mkdir()
+    (tmp_path / "parts" / "more" / "Skin.proto").write_text(LEG.replace("Leg", "Skin"))
+    assert "Skin" not in read_mesh(dog).left_out
+
+
 def test_what_is_left_out_is_counted_and_named(dog, caplog):
     told = "left out, as not read: 1 Fur (a colour), 1 IndexedLineSet, 1 Skin, 1 Tail"
     assert read_mesh(dog).left_out == told
@@ -255,17 +282,47 @@ def test_a_cad_shape_is_read_in_its_colours(tmp_path):
     path = tmp_path / "cart.proto"
     path.write_text('PROTO cart [] { Pose { children [ CadShape { url "part.obj" } ] } }')
     assert read_mesh(path).colours.tolist() == [[1.0, 0.0, 0.0]] * 2
-    path.write_text('PROTO cart [] { Pose { children [ CadShape { url "part.dae" } ] } }')
-    with pytest.raises(EyasError, match=r"part\.dae: not a mesh file; allowed: \.glb"):
+    path.write_text('PROTO cart [] { Pose { children [ CadShape { url "part.step" } ] } }')
+    (tmp_path / "part.step").write_text("ISO-10303-21;")
+    with pytest.raises(EyasError, match=r"part\.step: not a mesh file; allowed: \.dae"):
         read_mesh(path)
 
 
-@pytest.mark.parametrize("mark", ["%<= fields.high.value >%", "%{= fields.high.value }%"])
-def test_templates_of_both_kinds_are_named(tmp_path, mark):
-    path = tmp_path / "t.proto"
-    path.write_text(f"PROTO t [] {{ Shape {{ geometry Box {{ size 1 1 {mark} }} }} }}")
-    with pytest.raises(EyasError, match=f"it is a template \\({mark[:2]} "):
-        read_mesh(path)
+def test_a_geometry_and_a_colour_may_be_protos(read, tmp_path):
+    (tmp_path / "Rod.proto").write_text("PROTO Rod [ field SFFloat r 1 ] { Cone { height IS r } }")
+    (tmp_path / "Red.proto").write_text("PROTO Red [] { PBRAppearance { baseColor 1 0 0 } }")
+    shape = read(
+        "PROTO Thing [] { Group { children [ Shape { appearance Red { } geometry Rod { r 0.5 } } "
+        "Shape { appearance Plastic { colorOverride 0 1 0 } geometry Box { } } ] } }"
+    )
+    assert shape.points[:, 2].max() == pytest.approx(0.25)
+    assert set(map(tuple, shape.colours.tolist())) == {(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)}
+    assert shape.left_out == ""
+
+
+def test_what_a_proto_that_is_not_there_holds_is_shown(read):
+    shape = read(
+        "PROTO Thing [] { Robot { children [ SpringJoint { endPoint Solid { translation 0 0 1 "
+        "children [ Shape { geometry Box { size 1 1 1 } } ] } } ] } }"
+    )
+    assert shape.points[:, 2].max() == pytest.approx(1.5)
+    assert shape.left_out == "left out, as not read: 1 SpringJoint"
+
+
+def test_before_r2022a_the_axis_of_what_is_round_is_y(read):
+    text = proto("Cylinder { radius 0.5 height 3 }")
+    assert read(text).size == pytest.approx((1.0, 1.0, 3.0), abs=1e-9)
+    old = read("#VRML_SIM R2021b utf8\n" + text)
+    assert old.size == pytest.approx((1.0, 3.0, 1.0), abs=1e-9)
+    assert "custom.up=y stands it upright" in old.left_out
+
+
+def test_motors_may_have_numbers_without_bounds(read):
+    text = "PROTO Thing [] { Solid { children [ HingeJoint { device RotationalMotor { "
+    text += "maxTorque 1e10 } endPoint Solid { children [ Shape { geometry Box { } } ] } } ] } }"
+    assert len(read(text).corners) == 12
+    with pytest.raises(EyasError, match=r"Box\.size: 3 numbers expected"):
+        read(proto("Box { size 1 2 1e10 }"))
 
 
 def test_a_node_turns_what_is_inside_it_counter_clockwise_about_its_axis(read):

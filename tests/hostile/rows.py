@@ -541,6 +541,131 @@ def _proto(folder, chance, most):
     return of_mesh(folder, "cart.proto", PROTO.encode(), chance, most, deep, *words)
 
 
+SCRIPTS = {
+    "javascript": """const a = [1, 2.5]; let s = '';
+for (let i = 0; i < 3; ++i) { a.push(i * a[0] + Math.sin(i)); s += `${i}` + fields.name.value; }
+function f(x, y) { return x > y ? x : f(y, x) ** 2; }
+const o = {x: 1, 'y': [2]}; while (o.x < 3) { o.x += 1; if (a.length > 9) break; }""",
+    "lua": """local a, s = {1, 2.5}, ''
+for i = 1, 3 do table.insert(a, i * a[1] + math.sin(i)) s = s .. i .. fields.name.value end
+local function f(x, y) if x > y then return x end return f(y, x) ^ 2 end
+for w in ('a b'):gmatch('%w+') do s = s .. w end
+local o = {x = 1, [2] = 3} while o.x < 3 do o.x = o.x + 1 if #a > 9 then break end end""",
+}
+BUSY = ("while (true) { s += s; }", "let z = [1]; for (;;) z = z.concat(z);", "a[1e9] = 1; s.x.y;",
+        "while true do s = s .. s end", "while true do table.insert(a, 1, s:rep(9)) end",
+        "f(f, f)", "(" * 5000, "[" * 5000, "1 + " * 5000, "/*" * 5000, "'" * 5001,
+        "{" * 5000)  # fmt: skip
+
+
+def _template(language: str) -> Make:
+    def make(folder, chance, most):
+        text = (
+            f'# template language: {language}\nPROTO T [ field SFString name "t" ] {{\n'
+            f"%<\n{SCRIPTS[language]}\n>% Shape {{ geometry Box {{ size 1 %<= f(1, 2) >% 1 }} }} }}"
+        )
+        bombs = (text.replace("\n>%", f"\n{busy} >%").encode() for busy in BUSY)
+        words = with_words(text, ABSURD_WORDS)
+        return of_mesh(folder, f"{language}.proto", text.encode(), chance, most, *bombs, *words)
+
+    return make
+
+
+ROWS.update({f"proto in {language}": _template(language) for language in SCRIPTS})
+
+URDF = """<?xml version="1.0"?>
+<robot name="r"><material name="red"><color rgba="1 0 0 1"/></material>
+<link name="a"><visual><origin xyz="0 0 1" rpy="0 0.5 0"/><geometry><box size="1 2 0.5"/></geometry>
+<material name="red"/></visual></link>
+<link name="b"><visual><geometry><cylinder radius="0.2" length="0.4"/></geometry></visual>
+<visual><geometry><mesh filename="package://r/m.stl" scale="1 1 2"/></geometry></visual></link>
+<joint name="j" type="fixed"><parent link="a"/><child link="b"/><origin xyz="0 1 0"/></joint>
+</robot>
+"""
+XML_BOMB = b"""<?xml version="1.0"?><!DOCTYPE r [<!ENTITY a "aaaaaaaaaa">
+<!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;"><!ENTITY c "&b;&b;&b;&b;&b;&b;&b;&b;">]><robot>&c;</robot>"""
+
+
+@row("urdf")
+def _urdf(folder, chance, most):
+    import trimesh
+
+    (folder / "m.stl").write_bytes(trimesh.creation.box((0.1, 0.2, 0.3)).export(file_type="stl"))
+    loop = URDF.replace("</robot>", "") + (
+        '<joint name="k"><parent link="b"/><child link="a"/></joint><link name="c"/></robot>'
+    )
+    many = "<joint><parent link='a'/><child link='b'/></joint>" * 5000 + "</robot>"
+    bombs = (XML_BOMB, loop.encode(), URDF.replace("</robot>", many).encode(), b"<r>" * 100_000)
+    words = with_words(URDF, ABSURD_WORDS)
+    return of_mesh(folder, "r.urdf", URDF.encode(), chance, most, *bombs, *words)
+
+
+@row("dae")
+def _dae(folder, chance, most):
+    import trimesh
+
+    content = trimesh.creation.box((1.0, 2.0, 0.5)).export(file_type="dae").decode()
+    nodes = "".join(
+        f'<node id="n{k}">' + 8 * f'<instance_node url="#n{k + 1}"/>' + "</node>" for k in range(30)
+    )
+    scene = "<library_visual_scenes>"
+    bombs = (
+        XML_BOMB,
+        content.replace(scene, f"<library_nodes>{nodes}</library_nodes>{scene}").replace(
+            "</visual_scene>", '<node><instance_node url="#n0"/></node></visual_scene>'
+        ).encode(),
+        content.replace("<node ", "<node><node>" * 400 + "<node ", 1).encode(),
+    )  # fmt: skip
+    words = with_words(content, ABSURD_WORDS)
+    return of_mesh(folder, "box.dae", content.encode(), chance, most, *bombs, *words)
+
+
+@row("draco")
+def _draco(folder, chance, most):
+    import DracoPy
+    import trimesh
+
+    box = trimesh.creation.box((1.0, 2.0, 0.5))
+    packed = DracoPy.encode(box.vertices, box.faces)
+    names = {"POSITION": DracoPy.decode(packed).attributes[0]["unique_id"]}
+    extension = {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": names}}
+    header = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "extensionsRequired": [*extension], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1,
+                                    "extensions": extension}]}],
+        "accessors": [{"componentType": 5126, "count": 8, "type": "VEC3"},
+                      {"componentType": 5125, "count": 36, "type": "SCALAR"}],
+        "bufferViews": [{"buffer": 0, "byteLength": len(packed)}],
+        "buffers": [{"byteLength": len(packed), "uri": "box.bin"}],
+    }  # fmt: skip
+    huge = packed[:12] + b"\xff\xff\xff\xff\x0f" * 2 + packed[14:]
+    (folder / "box.gltf").write_text(json.dumps(header))
+    (folder / "box.bin").write_bytes(packed)
+    row = of_mesh(folder, "box.gltf", json.dumps(header).encode(), chance, most)
+    return of_bytes(folder / "box.bin", row.read, chance, most, huge)
+
+
+@row("meshopt")
+def _meshopt(folder, chance, most):
+    sys.path.insert(0, str(Path(__file__).parents[1] / "engine" / "custom"))
+    import base64
+
+    from test_meshopt import POINTS, TRIANGLES, gltf
+
+    header = gltf()
+    contents = [base64.b64decode(text) for text in (POINTS, TRIANGLES)]
+    for k, content in enumerate(contents):
+        header["buffers"][k]["uri"] = "packed.bin"
+        header["bufferViews"][k]["extensions"]["EXT_meshopt_compression"]["byteOffset"] = k * len(
+            contents[0]
+        )
+        header["buffers"][k]["byteLength"] = len(content)
+    (folder / "packed.bin").write_bytes(b"".join(contents))
+    row = of_mesh(folder, "a.gltf", json.dumps(header).encode(), chance, most)
+    return of_bytes(folder / "packed.bin", row.read, chance, most)
+
+
 # Policies, latencies, logs of flights.
 
 

@@ -1,18 +1,23 @@
 """Shapes in Webots' `.proto` files: plain geometry, at the places where its nodes put it."""
 
 import math
+import os
 import re
 from collections import Counter
 from collections.abc import Callable, Sequence
-from itertools import pairwise
+from functools import lru_cache
+from itertools import islice, pairwise
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.dat.proto_parser import ProtoNode, parsed
+from eyas.dat.proto_script import Limits
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
+from eyas.engine.custom import solids
+from eyas.engine.custom.lookup import found_file
 from eyas.lanes import exact
 
 GEOMETRY = ("Box", "Cylinder", "Sphere", "Cone", "Capsule", "IndexedFaceSet", "Mesh")
@@ -22,19 +27,22 @@ _LARGEST_FILE = 64 << 20  # [bytes]
 _MOST_PARTS, _MOST_TRIANGLES = 5000, 1_000_000
 _MOST_READ = 64 << 20
 """Largest content of all PROTOs together, where one is read again for each node [bytes]."""
-_ROUND = 24  # Number of sides of what is round
+_LARGEST = 1e9  # Largest number of a shape [m]
 _PLAIN = (0.62, 0.62, 0.62)  # sRGB of what has no colour
 _INSIDE = (
     "children", "endPoint", "device", "value", "slowHelix", "fastHelix", "animatedGeometries",
 )  # fmt: skip
 """Fields in which there may be shapes; not `boundingObject`, which is not drawn."""
-_NOT_DRAWN = ("IndexedLineSet", "PointSet")  # Geometry without a surface
+_PLAIN_NODES = ("Appearance", "PBRAppearance", *GEOMETRY)  # Of shapes; others may be PROTOs
+_COLOURS = ("diffuseColor", "baseColor", "colorOverride")  # Fields of appearances and materials
+_Z_UP = 2022  # Year of the Webots from which on z is up, and the axis of what is round
 _NODES = frozenset(
     "Accelerometer Altimeter BallJoint Billboard Brake Camera Charger Compass Connector "
-    "DifferentialWheels Display DistanceSensor Emitter GPS Group Gyro Hinge2Joint HingeJoint "
-    "InertialUnit LED Lidar LightSensor LinearMotor Microphone Muscle Pen PointLight Pose "
-    "PositionSensor Propeller Radar RangeFinder Receiver Robot RotationalMotor Servo SliderJoint "
-    "Slot Solid SolidReference Speaker SpotLight Supervisor TouchSensor Track TrackWheel Transform "
+    "DifferentialWheels Display DistanceSensor Emitter GPS Group Gyro Hinge2Joint "
+    "Hinge2JointWithBacklash HingeJoint HingeJointWithBacklash InertialUnit LED Lidar "
+    "LightSensor LinearMotor Microphone Muscle Pen PointLight Pose PositionSensor Propeller "
+    "Radar RangeFinder Receiver Robot RotationalMotor Servo SliderJoint Slot Solid "
+    "SolidReference Speaker SpotLight Supervisor TouchSensor Track TrackWheel Transform "
     "VacuumGripper".split()
 )
 """Webots' own nodes that show nothing but what is inside them."""
@@ -43,7 +51,7 @@ Floats = NDArray[np.float64]
 Faces = NDArray[np.int64]
 Part = tuple[Floats, Faces, Floats]
 """Points [m], shape (V, 3), triangles, shape (T, 3), and sRGB of each, shape (T, 3)."""
-Solid = tuple[Floats, Faces]
+Solid = solids.Solid
 
 
 def read_proto(path: Path, mesh: Callable[[Path], Part]) -> tuple[list[Part], str]:
@@ -62,15 +70,15 @@ def read_proto(path: Path, mesh: Callable[[Path], Part]) -> tuple[list[Part], st
         walk.read(path)
     except (ValueError, TypeError, IndexError, OverflowError) as error:
         raise DataFileError(f"{path}: cannot read as a PROTO: {error}") from None
-    counted = [f"{count} {kind}" for kind, count in sorted(walk.left_out.items())]
-    left_out = f"left out, as not read: {', '.join(counted):.300}" if counted else ""
+    left_out = _counted(walk.left_out)
     if not walk.parts:
-        told = f" ({left_out})" if counted else ""
+        told = f" ({left_out})" if left_out else ""
         raise DataFileError(
             f"{path}: no geometry that can be read{told}; allowed: {', '.join(GEOMETRY)} in Shape "
             "nodes, and CadShape"
         )
-    return walk.parts, left_out
+    old = "made before Webots R2022a: if y is up in it, custom.up=y stands it upright"
+    return walk.parts, "; ".join(filter(None, (left_out, old if walk.old else "")))
 
 
 class _Place:
@@ -80,10 +88,13 @@ class _Place:
         externs: Addresses of the PROTOs that it names.
         turn: Axes of the frame as columns, perhaps scaled.
         origin: Origin of the frame [m].
+        year: Of the Webots for which the file is made.
     """
 
-    def __init__(self, path: Path, externs: dict[str, str], turn: Floats, origin: Floats) -> None:
-        self.path, self._externs = path, externs
+    def __init__(
+        self, path: Path, externs: dict[str, str], turn: Floats, origin: Floats, year: int = 0
+    ) -> None:
+        self.path, self._externs, self.year = path, externs, year
         self.turn, self.origin = turn, origin
 
     def inside(self, node: ProtoNode) -> "_Place":
@@ -91,18 +102,32 @@ class _Place:
         moved = exact.product(self.turn, _vector(node, "translation", (0.0, 0.0, 0.0)))
         turn = exact.product(self.turn, _rotation(node.fields.get("rotation")))
         turn = turn * _vector(node, "scale", (1.0, 1.0, 1.0))
-        return _Place(self.path, self._externs, turn, self.origin + moved)
+        return _Place(self.path, self._externs, turn, self.origin + moved, self.year)
 
     def proto_of(self, kind: str) -> Path | None:
         """Return the file of another PROTO; None if it is not on this machine."""
-        address = self._externs.get(kind, f"{kind}.proto")
-        if "://" in address or not re.fullmatch(r"[\w.-]+", kind):
+        if not re.fullmatch(r"[\w.-]+", kind):
             return None
-        path = self.path.parent / address
-        try:
-            return path if path.is_file() else None
-        except (OSError, ValueError):  # a name that no file can have
-            return None
+        named = found_file(self.path, self._externs.get(kind, f"{kind}.proto"))
+        return named or _protos_in(self.path.parent).get(kind) or _library().get(kind)
+
+
+def _library() -> dict[str, Path]:
+    """Return the PROTOs that Webots brings, in the folder `WEBOTS_HOME`."""
+    home = os.environ.get("WEBOTS_HOME")
+    return _protos_in(Path(home, "projects"), 20_000) if home else {}
+
+
+@lru_cache(maxsize=64)
+def _protos_in(folder: Path, most: int = 200) -> dict[str, Path]:
+    """Return the PROTOs in a folder and those inside it, as Webots before R2022b finds them."""
+    found: dict[str, Path] = {}
+    for where, folders, names in islice(os.walk(folder), most):
+        folders.sort()
+        for name in names:
+            if name.endswith(".proto"):
+                found.setdefault(name.removesuffix(".proto"), Path(where, name))
+    return found
 
 
 class _Walk:
@@ -114,25 +139,41 @@ class _Walk:
         self._mesh = mesh
         self._triangles = self._visited = self._parsed = 0
         self._texts: dict[Path, str] = {}
+        self._missing, self.old = 0, False
+        self._limits = Limits()
 
     def read(self, path: Path) -> None:
         """Add what a file shows."""
-        self._visit_proto(path, {}, np.eye(3), np.zeros(3), 0)
+        body, at = self._opened(path, {}, _Place(path, {}, np.eye(3), np.zeros(3)), 0)
+        self.old = at.year < _Z_UP
+        self._visit(body, at, 1)
+        if self._missing > len(self.parts):
+            raise ValueError("more than half of its meshes are missing: " + _counted(self.left_out))
 
-    def _visit_proto(
-        self, path: Path, given: dict[str, object], turn: Floats, origin: Floats, depth: int
-    ) -> None:
-        """Add what a PROTO shows. Its own node moves it: `translation` is passed on to that."""
+    def _opened(
+        self, path: Path, given: dict[str, object], at: _Place, depth: int
+    ) -> tuple[ProtoNode, _Place]:
+        """Return the node that a PROTO stands for, at a place: its `translation` is passed on."""
         if path not in self._texts:
             self._texts[path] = read_limited(path, _LARGEST_FILE).decode("utf-8", "replace")
         self._parsed += len(self._texts[path])
         if depth and self._parsed > _MOST_READ:
             raise ValueError("its PROTOs are too large together, or name each other without end")
         try:
-            proto = parsed(self._texts[path], given)
+            proto = parsed(self._texts[path], given, self._limits)
         except ValueError as error:
             raise ValueError(f"{path.name}: {error}" if depth else str(error)) from None
-        self._visit(proto.body, _Place(path, proto.externs, turn, origin), depth + 1)
+        return proto.body, _Place(path, proto.externs, at.turn, at.origin, proto.year)
+
+    def _resolved(self, node: ProtoNode, at: _Place, depth: int) -> tuple[ProtoNode, _Place]:
+        """Return a geometry or an appearance that may be a PROTO as what that stands for."""
+        while depth <= 64 and node.kind not in _PLAIN_NODES:
+            other = at.proto_of(node.kind)
+            if other is None:
+                break
+            node, at = self._opened(other, node.fields, at, depth + 1)
+            depth += 1
+        return node, at
 
     def _visit(self, node: ProtoNode, at: _Place, depth: int) -> None:
         """Add what a node shows."""
@@ -140,42 +181,47 @@ class _Walk:
         if depth > 64 or self._visited > 20 * _MOST_PARTS:
             raise ValueError("nested too deep, or too many nodes")
         if node.kind == "Shape":
-            self._add(node, at.inside(node))
+            self._add(node, at.inside(node), depth)
         elif node.kind == "CadShape":
             here = at.inside(node)
-            self._put(here, *self._file(node, here))
-        elif node.kind in _NODES:
+            if (part := self._file(node, here)) is not None:
+                self._put(here, *part)
+        elif node.kind not in _NODES and (other := at.proto_of(node.kind)) is not None:
+            self._visit(*self._opened(other, node.fields, at, depth), depth + 1)
+        else:
+            if node.kind not in _NODES:  # what it holds may be shown all the same
+                self.left_out[node.kind] += 1
             here = at.inside(node)
             for name in _INSIDE:
                 inside = node.fields.get(name)
                 for child in inside if isinstance(inside, list) else [inside]:
                     if isinstance(child, ProtoNode):
                         self._visit(child, here, depth + 1)
-        elif (other := at.proto_of(node.kind)) is not None:
-            self._visit_proto(other, node.fields, at.turn, at.origin, depth + 1)
-        else:
-            self.left_out[node.kind] += 1
 
-    def _add(self, shape: ProtoNode, at: _Place) -> None:
+    def _add(self, shape: ProtoNode, at: _Place, depth: int) -> None:
         geometry = shape.fields.get("geometry")
         if not isinstance(geometry, ProtoNode):
             return
-        if geometry.kind in _NOT_DRAWN:
-            self.left_out[geometry.kind] += 1
-            return
+        geometry, here = self._resolved(geometry, at, depth)
         if geometry.kind == "Mesh":
-            points, faces, _ = self._file(geometry, at)
+            part = self._file(geometry, here)
+            if part is None:
+                return
+            points, faces, _ = part
         elif geometry.kind in _SOLIDS:
             points, faces = _SOLIDS[geometry.kind](geometry)
+            if here.year < _Z_UP and geometry.kind in ("Cylinder", "Cone", "Capsule"):
+                points = points[:, [1, 2, 0]]  # their axis was y
         else:
-            raise ValueError(f"geometry {geometry.kind}; allowed: {', '.join(GEOMETRY)}")
-        appearance = shape.fields.get("appearance")
-        if isinstance(appearance, ProtoNode) and appearance.kind not in (
-            "Appearance",
-            "PBRAppearance",
-        ):
-            self.left_out[f"{appearance.kind} (a colour)"] += 1
-        self._put(at, points, faces, np.tile(_colour(shape), (len(faces), 1)))
+            self.left_out[geometry.kind] += 1
+            return
+        appearance, colour = shape.fields.get("appearance"), _PLAIN
+        if isinstance(appearance, ProtoNode):
+            found = _colour(self._resolved(appearance, at, depth)[0])
+            if found is None and appearance.kind not in _PLAIN_NODES:
+                self.left_out[f"{appearance.kind} (a colour)"] += 1
+            colour = found or _PLAIN
+        self._put(at, points, faces, np.tile(colour, (len(faces), 1)))
 
     def _put(self, at: _Place, points: Floats, faces: Faces, colours: Floats) -> None:
         if exact.dot(at.turn[0], np.cross(at.turn[1], at.turn[2])) < 0.0:
@@ -185,18 +231,31 @@ class _Walk:
             raise ValueError(f"more than {_MOST_PARTS} shapes or {_MOST_TRIANGLES} triangles")
         self.parts.append((exact.product(points, at.turn.T) + at.origin, faces, colours))
 
-    def _file(self, node: ProtoNode, at: _Place) -> Part:
+    def _file(self, node: ProtoNode, at: _Place) -> Part | None:
+        """Return the mesh that a node names; None, and it is counted, if it is not here."""
         url = node.fields.get("url")
         url = url[0] if isinstance(url, list) and url else url
-        if not isinstance(url, str) or "://" in url:
-            raise ValueError(f"{node.kind}: url {url!r:.200}; allowed: a file beside the PROTO")
-        return self._mesh(at.path.parent / url)
+        found = found_file(at.path, url) if isinstance(url, str) else None
+        if found is not None:
+            return self._mesh(found)
+        self._missing += 1
+        name = str(url).rpartition("/")[2]
+        webots = "cyberbotics/webots/" in str(url) or str(url).startswith("webots://")
+        why = ", see WEBOTS_HOME" if webots else ", on the web" if "http" in str(url)[:4] else ""
+        self.left_out[f"{name:.60} (no such file{why})"] += 1
+        return None
+
+
+def _counted(left_out: Counter[str]) -> str:
+    """Return what is left out in words."""
+    counted = ", ".join(f"{count} {kind}" for kind, count in sorted(left_out.items()))
+    return f"left out, as not read: {counted:.400}" if counted else ""
 
 
 def _vector(node: ProtoNode, name: str, default: Sequence[float]) -> Floats:
     value = node.fields.get(name)
     numbers = np.array(default if value is None else value, np.float64)
-    if numbers.shape != (len(default),) or not np.isfinite(numbers).all():
+    if numbers.shape != (len(default),) or not (np.abs(numbers) <= _LARGEST).all():
         raise ValueError(f"{node.kind}.{name}: {len(default)} numbers expected")
     return numbers
 
@@ -222,76 +281,15 @@ def _rotation(value: object) -> Floats:
     return np.asarray(turned, np.float64)
 
 
-def _colour(shape: ProtoNode) -> tuple[float, float, float]:
-    appearance = shape.fields.get("appearance")
-    if not isinstance(appearance, ProtoNode):
-        return _PLAIN
+def _colour(appearance: ProtoNode) -> tuple[float, float, float] | None:
+    """Return the sRGB of an appearance; None if it has none that is read."""
     material = appearance.fields.get("material")
-    given = appearance.fields.get("baseColor")
-    if isinstance(material, ProtoNode):
-        given = material.fields.get("diffuseColor", given)
+    fields = appearance.fields | (material.fields if isinstance(material, ProtoNode) else {})
+    given = next((fields[name] for name in _COLOURS if fields.get(name) is not None), None)
     if given is None:
-        return _PLAIN
+        return None
     red, green, blue = np.clip(np.array(given, np.float64), 0.0, 1.0).tolist()
     return red, green, blue
-
-
-def _box(node: ProtoNode) -> Solid:
-    half = 0.5 * _vector(node, "size", (0.1, 0.1, 0.1))
-    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)
-    quads = np.array(
-        [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-    )
-    return signs * half, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-
-
-def _turned(profile: Sequence[tuple[float, float]]) -> Solid:
-    """Return a solid of revolution about z from radii and heights, the lowest first."""
-    angle = 2.0 * math.pi * np.arange(_ROUND) / _ROUND
-    ring = np.stack([exact.cos(angle), exact.sin(angle)], axis=-1)
-    points = [np.column_stack([r * ring, np.full(_ROUND, z)]) for r, z in profile]
-    here = np.arange(_ROUND)
-    after = (here + 1) % _ROUND
-    faces = []
-    for level in range(len(profile) - 1):
-        low, high = level * _ROUND, (level + 1) * _ROUND
-        if profile[level][0] > 0.0:
-            faces.append(np.column_stack([low + here, low + after, high + after]))
-        if profile[level + 1][0] > 0.0:
-            faces.append(np.column_stack([low + here, high + after, high + here]))
-    return np.concatenate(points), np.concatenate(faces)
-
-
-def _cylinder(node: ProtoNode) -> Solid:
-    radius, half = _number(node, "radius", 1.0), 0.5 * _number(node, "height", 2.0)
-    return _turned([(0.0, -half), (radius, -half), (radius, half), (0.0, half)])
-
-
-def _cone(node: ProtoNode) -> Solid:
-    radius, half = _number(node, "bottomRadius", 1.0), 0.5 * _number(node, "height", 2.0)
-    return _turned([(0.0, -half), (radius, -half), (0.0, half)])
-
-
-def _arc(radius: float, middle: float, first: float, last: float) -> list[tuple[float, float]]:
-    """Return points of a circle between two heights above its middle, as angles [rad]."""
-    angles = np.linspace(first, last, _ROUND // 2 + 1)
-    return [(radius * max(exact.cos(a), 0.0), middle + radius * exact.sin(a)) for a in angles]
-
-
-def _ended(profile: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    return [(0.0, profile[0][1]), *profile[1:-1], (0.0, profile[-1][1])]
-
-
-def _sphere(node: ProtoNode) -> Solid:
-    quarter = 0.5 * math.pi
-    return _turned(_ended(_arc(_number(node, "radius", 1.0), 0.0, -quarter, quarter)))
-
-
-def _capsule(node: ProtoNode) -> Solid:
-    radius, half = _number(node, "radius", 1.0), 0.5 * _number(node, "height", 2.0)
-    quarter = 0.5 * math.pi
-    low, high = _arc(radius, -half, -quarter, 0.0), _arc(radius, half, 0.0, quarter)
-    return _turned(_ended([*low, *high]))
 
 
 def _face_set(node: ProtoNode) -> Solid:
@@ -300,7 +298,8 @@ def _face_set(node: ProtoNode) -> Solid:
     point = coord.fields.get("point") if isinstance(coord, ProtoNode) else None
     points = np.array([] if point is None else point, np.float64).reshape(-1, 3)
     index = node.fields.get("coordIndex")
-    corners = np.array([] if index is None else index, np.float64).astype(np.int64)
+    corners = np.clip(np.array([] if index is None else index, np.float64), -1.0, 2.0**40)
+    corners = corners.astype(np.int64)
     if corners.size and corners.max() >= len(points):
         raise ValueError(f"IndexedFaceSet.coordIndex: up to {len(points) - 1} expected")
     faces, polygon = [], list[int]()
@@ -317,10 +316,14 @@ def _face_set(node: ProtoNode) -> Solid:
 
 
 _SOLIDS: dict[str, Callable[[ProtoNode], Solid]] = {
-    "Box": _box,
-    "Cylinder": _cylinder,
-    "Cone": _cone,
-    "Sphere": _sphere,
-    "Capsule": _capsule,
+    "Box": lambda node: solids.box(_vector(node, "size", (0.1, 0.1, 0.1))),
+    "Cylinder": lambda node: solids.cylinder(*_round(node, "radius")),
+    "Cone": lambda node: solids.cone(*_round(node, "bottomRadius")),
+    "Sphere": lambda node: solids.sphere(_number(node, "radius", 1.0)),
+    "Capsule": lambda node: solids.capsule(*_round(node, "radius")),
     "IndexedFaceSet": _face_set,
 }
+
+
+def _round(node: ProtoNode, radius: str) -> tuple[float, float]:
+    return _number(node, radius, 1.0), _number(node, "height", 2.0)

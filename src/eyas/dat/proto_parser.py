@@ -1,6 +1,7 @@
 """The language of Webots' `.proto` files, a subset of VRML: text becomes nodes.
 
-Not read: templates (`%< >%`, `%{ }%`), scripts and routes, which a shape does not need.
+Templates (`%< >%`, `%{ }%`) are filled in by `eyas.dat.proto_template`. Not read: routes, which a
+shape does not need.
 """
 
 import re
@@ -9,6 +10,9 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import NoReturn
 
+from eyas.dat.proto_script import Limits
+from eyas.dat.proto_template import filled_in
+
 _TOKEN = re.compile(
     r'\s*(?:,|#[^\n]*|(?P<text>"(?:[^"\\]|\\.)*")|(?P<mark>[\[\]{}])'
     r'|(?P<word>[^\s,#"\[\]{}]+))'
@@ -16,7 +20,7 @@ _TOKEN = re.compile(
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|0[xX][0-9a-fA-F]+")
 
 _DEEPEST = 64  # Largest nesting of nodes and lists
-_LARGEST = 1e9  # Largest number; most are metres
+_LARGEST = 1e30  # Largest number; motors that know no bounds have large ones
 _MOST = 4_000_000  # Largest number of words and numbers in a file
 
 _FIELDS = ("field", "exposedField", "vrmlField", "hiddenField", "unconnectedField", "w3dField")
@@ -38,6 +42,7 @@ class Proto:
 
     body: ProtoNode  # The node that the PROTO stands for
     externs: dict[str, str]  # Addresses of other PROTOs, by their names
+    year: int  # Of the Webots for which it is made
 
 
 class _Reader:
@@ -48,37 +53,50 @@ class _Reader:
         self._at = 0
         self._named: dict[str, ProtoNode] = {}
         self._values: dict[str, object] = {}
+        self._usual: dict[str, tuple[str, object]] = {}  # Types and defaults of the fields
         self._given = given
 
-    def proto(self) -> Proto:
-        """Return what the file tells, with the values of the PROTO's fields in their places."""
+    def head(self) -> dict[str, str]:
+        """Read up to the brace before the body; return the addresses of other PROTOs."""
         externs = {}
         while (token := self._next()) != "PROTO":
             if token.startswith('"'):
                 address = token[1:-1]
                 externs[address.rpartition("/")[2].removesuffix(".proto")] = address
             elif token not in ("EXTERNPROTO", "IMPORTABLE"):
-                self._fail("no PROTO")
+                self._fail("no PROTO of Webots")
         self._next()
         self._expect("[")
         while self._peek() != "]":
             self._interface()
         self._next()
         self._expect("{")
+        return externs
+
+    def body(self) -> ProtoNode:
+        """Return the node, with the values of the PROTO's fields in their places."""
         node = self._node(0)
         self._expect("}")
-        return Proto(node, externs)
+        return node
+
+    def fields(self) -> dict[str, object]:
+        """Return the PROTO's fields as templates see them."""
+        return {
+            name: {"value": _plain(kind, self._values[name]), "defaultValue": _plain(kind, usual)}
+            for name, (kind, usual) in self._usual.items()
+        }
 
     def _interface(self) -> None:
         """Read `field TYPE name value`, which may list allowed values after the type."""
         if self._next() not in _FIELDS:
             self._fail("'field' expected")
-        self._next()
+        kind = self._next()
         if self._peek() == "{":
             while self._next() != "}":
                 pass
         name = self._next()
         usual = self._value(0)
+        self._usual[name] = kind, usual
         self._values[name] = self._given.get(name, usual)
 
     def _node(self, depth: int) -> ProtoNode:
@@ -160,17 +178,52 @@ class _Reader:
         raise ValueError(f"{what} (word {self._at})")
 
 
-def parsed(text: str, given: Mapping[str, object] = MappingProxyType({})) -> Proto:
-    """Return what the text of a PROTO tells, with values of its fields that are not their defaults.
+def parsed(
+    text: str, given: Mapping[str, object] = MappingProxyType({}), limits: Limits | None = None
+) -> Proto:
+    """Return what the text of a PROTO tells.
+
+    Args:
+        given: Values of its fields that are not their defaults.
+        limits: Counts what its template does.
 
     Raises:
         ValueError: It cannot be read; one line.
     """
     template = re.search("%[<{]", text)
     if template is not None:
-        closed = {"%<": "%< ... >%", "%{": "%{ ... }%"}[template[0]]
-        raise ValueError(f"it is a template ({closed}), which only Webots can fill in")
-    return _Reader(text, given).proto()
+        reader = _Reader(text[: template.start()], given)
+        reader.head()
+        text = filled_in(text, reader.fields(), limits or Limits())
+    reader = _Reader(text, given)
+    externs = reader.head()
+    year = re.match(r"#VRML_SIM\s+[RV](20\d\d)", text)
+    return Proto(reader.body(), externs, int(year[1]) if year else _NEWEST)
+
+
+_NEWEST = 2025  # Year of a file that does not say for which Webots it is
+
+_PARTS = {"SFVec2f": "xy", "SFVec3f": "xyz", "SFRotation": "xyza", "SFColor": "rgb"}
+"""Names of the numbers of a value in templates, by its type."""
+
+
+def _plain(kind: str, value: object) -> object:
+    """Return a field's value as templates see it."""
+    if isinstance(value, ProtoNode):
+        inside = {name: {"value": _plain("", one)} for name, one in value.fields.items()}
+        return {"node_name": value.kind, "fields": inside}
+    if not isinstance(value, list):
+        return [value] if kind.startswith("MF") else value
+    if value and isinstance(value[0], float):
+        parts = _PARTS.get(kind.replace("MF", "SF", 1), "")
+        if not parts:
+            return [*value] if kind.startswith("MF") or len(value) > 1 else value[0]
+        size = len(parts)
+        rows = [
+            dict(zip(parts, value[k : k + size], strict=False)) for k in range(0, len(value), size)
+        ]
+        return rows if kind.startswith("MF") else rows[0]
+    return [_plain("", one) for one in value]
 
 
 def _tokens(text: str) -> Iterator[str]:

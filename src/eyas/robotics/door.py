@@ -10,6 +10,7 @@ HOUSE = House(
             "rosbag": "eyas.robotics.ros.bag:RosbagWriter",
             "rosbag-mcap": "eyas.robotics.ros.bag:RosbagMcapWriter",
         },
+        "eyas.mesh_files": {".urdf": "eyas.robotics.urdf_file:read_urdf"},
         "eyas.track_files": {
             ".gpx": "eyas.robotics.tracks.geo:read_gpx",
             ".kml": "eyas.robotics.tracks.geo:read_kml",

@@ -17,6 +17,7 @@ from contextlib import contextmanager
 from gzip import GzipFile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,6 +85,20 @@ def decoded_json(content: bytes, pairs: Pairs | None = None) -> Any:  # noqa: AN
         half = ascii(error.object[error.start])
         raise ValueError(f"{half} is half a character, which no text may hold") from None
     return value
+
+
+def decoded_xml(content: bytes) -> ElementTree.Element:
+    """Return the root of a text of XML that declares nothing of its own.
+
+    Raises:
+        ValueError: It is something else, or has a DOCTYPE or an ENTITY.
+    """
+    if re.search(rb"<!\s*(DOCTYPE|ENTITY)", content) or b"\0" in content:
+        raise ValueError("it has a DOCTYPE, an ENTITY or a zero byte, which is not read")
+    try:
+        return ElementTree.fromstring(content.lstrip())  # the declaration is often below a line
+    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        raise ValueError(f"not XML: {error}") from None
 
 
 def _whole(text: str) -> int:

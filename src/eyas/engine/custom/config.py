@@ -9,7 +9,14 @@ from eyas.engine.core.doors import brought
 from eyas.engine.core.named_code import NAMES_CODE
 from eyas.engine.targets.habit import Behaviour
 
-MESHES = (".glb", ".gltf", ".obj", ".ply", ".stl")  # Endings of the mesh files that can be read
+MESHES = (
+    ".dae",
+    ".glb",
+    ".gltf",
+    ".obj",
+    ".ply",
+    ".stl",
+)  # Endings of the mesh files that can be read
 ENDINGS = (*MESHES, *brought("eyas.mesh_files"))  # Endings of the files of shapes that can be read
 
 Text = Annotated[str, Field(min_length=1)]
@@ -23,7 +30,8 @@ class CustomConfig(Config):
     """
 
     mesh: Text | None = None
-    """File of its shape: glTF, GLB, OBJ, STL or PLY (extra `mesh`), or a Webots `.proto`."""
+    """File of its shape: glTF, GLB, COLLADA, OBJ, STL or PLY (extra `mesh`), a Webots `.proto`, or
+    a URDF."""
     path: Annotated[Text | None, NAMES_CODE] = None
     """Class of the target, `package.module:Class`, see `eyas.engine.custom.own.OwnTarget`."""
     trajectory: Text | Annotated[tuple[Text, ...], Field(min_length=1, max_length=64)] | None = None
@@ -39,7 +47,7 @@ class CustomConfig(Config):
     body: Text = "Pedestrian"
     """Kind that is moved by `trajectory` or `behaviour`, if there is neither `mesh` nor `path`."""
     up: Literal["y", "z"] | None = None
-    """Axis that is up in the file; None: y in glTF, else z."""
+    """Axis that is up in the file; None: y in glTF, in COLLADA what the file says, else z."""
     turn: Angle = 0.0
     """Angle by which the mesh is turned about its height, so that it looks along x [rad]."""
     scale: Annotated[float, Field(gt=0, le=1e6)] = 1.0

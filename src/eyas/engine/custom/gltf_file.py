@@ -1,7 +1,8 @@
 """Checks and repairs of glTF and GLB files before trimesh reads them.
 
 trimesh reads numbers as they are stored: it does not divide normalised integers, leaves sparse
-accessors at zero, and warns where an extension holds the geometry.
+accessors at zero, knows no transforms of textures, and warns where an extension holds the geometry.
+Draco is decoded by DracoPy, `EXT_meshopt_compression` by `eyas.engine.custom.meshopt`.
 """
 
 import base64
@@ -15,16 +16,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.decoding import decoded_json
+from eyas.engine.core.errors import MissingExtraError
 from eyas.engine.core.files import read_limited
+from eyas.engine.custom import meshopt
+from eyas.lanes import exact
 
 _READ = re.compile(
     "KHR_mesh_quantization|KHR_lights_punctual|KHR_materials_.*|KHR_xmp.*|EXT_texture_webp"
+    "|KHR_texture_transform|KHR_draco_mesh_compression|EXT_meshopt_compression"
 )
 """Extensions that are read, or whose absence changes neither shape nor colour."""
 
 _TYPES = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 _FLOAT = 5126  # Component type of glTF for float32
+_KINDS = {name.strip("<"): kind for kind, name in _TYPES.items()}
+_DRACO, _MESHOPT = "KHR_draco_mesh_compression", "EXT_meshopt_compression"
+_DRACO_HEADER = 11  # [bytes]
+_MOST_OF_DRACO = 4_000_000  # Largest number of triangles, or vertices
 _GLB = struct.Struct("<4sIIII")
 _CHUNK = struct.Struct("<II")
 _JSON = 0x4E4F534A  # Kind of a chunk: "JSON"
@@ -121,14 +130,20 @@ class _Mender:
             size += accessor["count"] * _width(accessor)
         if size > self._largest:
             raise ValueError(f"its accessors have {size:.3g} bytes; allowed: {self._largest}")
+        primitives = [one for mesh in self._header.get("meshes", ()) for one in mesh["primitives"]]
         coordinates = {
             number
-            for mesh in self._header.get("meshes", ())
-            for one in mesh["primitives"]
+            for one in primitives
             for name, number in one["attributes"].items()
             if name == "POSITION" or name.startswith("TEXCOORD")
         }
-        changed = False
+        for key in ("extensionsUsed", "extensionsRequired"):
+            if key in self._header:
+                self._header[key] = [
+                    name for name in self._header[key] if name not in (_DRACO, _MESHOPT)
+                ]
+        changed = self._unpack_views()
+        changed |= any([*map(self._unpack, primitives), *map(self._transform, primitives)])
         for number, accessor in enumerate(accessors):
             divided = accessor.get("normalized") is True and number in coordinates
             if "sparse" in accessor or (divided and accessor["componentType"] != _FLOAT):
@@ -138,16 +153,85 @@ class _Mender:
 
     def _replace(self, accessor: dict[str, Any], values: NDArray[Any], *, divided: bool) -> None:
         if divided and values.dtype.kind in "iu":
-            values = np.maximum(values / np.float64(np.iinfo(values.dtype).max), -1.0)
-            values, accessor["componentType"] = values.astype("<f4"), _FLOAT
+            values, accessor["componentType"] = _divided(values).astype("<f4"), _FLOAT
             for key in ("normalized", "min", "max"):
                 accessor.pop(key, None)
-        accessor.pop("sparse", None)
-        data = values.tobytes()
+        self._store(accessor, values)
+
+    def _unpack_views(self) -> bool:
+        """Replace the views that meshopt has packed; return whether there are any."""
+        views, size, changed = self._header.get("bufferViews", ()), 0, False
+        for view in views:
+            packed = view.get("extensions", {}).pop(_MESHOPT, None)
+            if packed is None:
+                continue
+            size += packed["count"] * packed["byteStride"]
+            if size > self._largest:
+                raise ValueError(f"its meshopt data have {size:.3g} bytes")
+            first = packed.get("byteOffset", 0)
+            data = self._buffer(packed["buffer"])[first : first + packed["byteLength"]]
+            view.update(self._new_buffer(meshopt.decoded(data, packed)), byteOffset=0)
+            changed = True
+        for number, buffer in enumerate(self._header.get("buffers", ())):
+            if number and changed and "uri" not in buffer:  # what was in place of the packed
+                buffer.update(uri="data:;base64,", byteLength=0)
+        return changed
+
+    def _new_buffer(self, data: bytes) -> dict[str, int]:
+        """Return a view of a new buffer."""
         address = f"data:application/octet-stream;base64,{base64.b64encode(data).decode()}"
-        buffers, views = (self._header.setdefault(key, []) for key in ("buffers", "bufferViews"))
+        buffers = self._header.setdefault("buffers", [])
         buffers.append({"byteLength": len(data), "uri": address})
-        views.append({"buffer": len(buffers) - 1, "byteLength": len(data)})
+        return {"buffer": len(buffers) - 1, "byteLength": len(data)}
+
+    def _unpack(self, primitive: dict[str, Any]) -> bool:
+        """Replace what Draco has packed; return whether there is any."""
+        packed = primitive.get("extensions", {}).pop(_DRACO, None)
+        if packed is None:
+            return False
+        accessors = self._header["accessors"]
+        faces, attributes = _draco(self._view(packed["bufferView"]))
+        corners = accessors[primitive["indices"]]
+        corners["componentType"] = 5125
+        self._store(corners, faces.astype("<u4").reshape(-1, 1))
+        for name, unique in packed["attributes"].items():
+            accessor, values = accessors[primitive["attributes"][name]], attributes[unique]
+            if values.shape[1] != _WIDTHS[accessor["type"]]:
+                raise ValueError(f"Draco's {name:.30} has another width than its accessor")
+            accessor["componentType"] = _KINDS[values.dtype.str[1:]]
+            self._store(accessor, values)
+        return True
+
+    def _transform(self, primitive: dict[str, Any]) -> bool:
+        """Apply the transform of a texture (KHR_texture_transform) to a primitive's coordinates."""
+        material = (
+            self._header["materials"][primitive["material"]] if "material" in primitive else {}
+        )
+        texture = material.get("pbrMetallicRoughness", {}).get("baseColorTexture", {})
+        moved = texture.get("extensions", {}).get("KHR_texture_transform")
+        if moved is None:
+            return False
+        name = f"TEXCOORD_{moved.get('texCoord', texture.get('texCoord', 0))}"
+        if name not in primitive["attributes"]:
+            return False
+        old = self._header["accessors"][primitive["attributes"][name]]
+        uv = _divided(self._values(old)) if old.get("normalized") else self._values(old)
+        uv = uv.astype(np.float64) * np.array(moved.get("scale", (1.0, 1.0)), np.float64)
+        angle = float(moved.get("rotation", 0.0))
+        cosine, sine = exact.cos(angle), exact.sin(angle)  # counter-clockwise, where v is down
+        turned = exact.product(uv, np.array([[cosine, -sine], [sine, cosine]]))
+        turned = turned + np.array(moved.get("offset", (0.0, 0.0)), np.float64)
+        accessor = {"componentType": _FLOAT, "type": "VEC2"}
+        self._store(accessor, turned.astype("<f4"))
+        self._header["accessors"].append(accessor)
+        primitive["attributes"]["TEXCOORD_0"] = len(self._header["accessors"]) - 1
+        return True
+
+    def _store(self, accessor: dict[str, Any], values: NDArray[Any]) -> None:
+        accessor.pop("sparse", None)
+        accessor["count"] = len(values)
+        views = self._header.setdefault("bufferViews", [])
+        views.append(self._new_buffer(values.tobytes()))
         accessor.update(bufferView=len(views) - 1, byteOffset=0)
 
     def _values(self, accessor: dict[str, Any]) -> NDArray[Any]:
@@ -170,7 +254,7 @@ class _Mender:
         if "bufferView" not in where:
             return np.zeros((count, width), dtype)
         view = self._header["bufferViews"][where["bufferView"]]
-        data = self._buffer(view["buffer"])[view.get("byteOffset", 0) :][: view["byteLength"]]
+        data = self._view(where["bufferView"])
         row = dtype.itemsize * width
         stride, first = view.get("byteStride", row), where.get("byteOffset", 0)
         if not 0 <= first <= len(data) or stride < row or not 0 <= count <= len(data):
@@ -181,6 +265,10 @@ class _Mender:
         at = first + stride * np.arange(count)[:, None] + np.arange(row)
         values: NDArray[Any] = flat[at].view(dtype).reshape(count, width)
         return values
+
+    def _view(self, number: int) -> bytes:
+        view = self._header["bufferViews"][number]
+        return self._buffer(view["buffer"])[view.get("byteOffset", 0) :][: view["byteLength"]]
 
     def _buffer(self, number: int) -> bytes:
         if number not in self._files:
@@ -197,3 +285,40 @@ class _Mender:
 def _width(accessor: dict[str, Any]) -> int:
     """Return the bytes of an element."""
     return _WIDTHS[accessor["type"]] * np.dtype(_TYPES[accessor["componentType"]]).itemsize
+
+
+def _divided(values: NDArray[Any]) -> NDArray[np.float64]:
+    """Return normalised integers as numbers from -1 to 1."""
+    return np.maximum(values / np.float64(np.iinfo(values.dtype).max), -1.0)
+
+
+def _draco(data: bytes) -> tuple[NDArray[Any], dict[int, NDArray[Any]]]:
+    """Return the triangles, and the attributes by their numbers, of a mesh that Draco has packed.
+
+    Its header says how large it is before anything of that size is made (Draco's bitstream 2.2).
+    """
+    if len(data) < _DRACO_HEADER + 10 or data[:5] != b"DRACO":
+        raise ValueError("Draco's data are not those of a mesh")
+    version, kind, method, flags = (data[5], data[6]), data[7], data[8], data[10]
+    if version != (2, 2) or kind != 1 or method > 1 or flags & 0x80:
+        raise ValueError("Draco's data are of a version, or hold metadata, which is not read")
+    first, at = _varint(data, _DRACO_HEADER + method)
+    second, _ = _varint(data, at)
+    if max(first, second) > _MOST_OF_DRACO:
+        raise ValueError(f"Draco's mesh has more than {_MOST_OF_DRACO} triangles or vertices")
+    try:
+        import DracoPy
+    except ImportError:
+        raise MissingExtraError("a file compressed by Draco", "mesh") from None
+    mesh = DracoPy.decode(data)
+    return mesh.faces, {one["unique_id"]: np.asarray(one["data"]) for one in mesh.attributes}
+
+
+def _varint(data: bytes, at: int) -> tuple[int, int]:
+    """Return a number of 7 bits a byte, the lowest first, and where it ends."""
+    value = 0
+    for k in range(5):
+        value |= (data[at + k] & 0x7F) << (7 * k)
+        if data[at + k] < 0x80:
+            return value, at + k + 1
+    raise ValueError("Draco's data are damaged")

@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from eyas.engine.core.doors import brought_object
 from eyas.engine.core.errors import DataFileError, EyasError, MissingExtraError
 from eyas.engine.core.files import read_limited, user_path
+from eyas.engine.custom.collada_file import checked_collada
 from eyas.engine.custom.config import ENDINGS, MESHES, CustomConfig
 from eyas.engine.custom.gltf_file import beside, mended_gltf
 from eyas.lanes import exact
@@ -45,6 +47,7 @@ class Triangles:
     corners: NDArray[np.int64]  # Vertices, counter-clockwise as seen from outside, shape (T, 3)
     colours: NDArray[np.float64]  # sRGB 0 to 1, shape (T, 3)
     left_out: str = ""  # Parts of the file that are not read, in words
+    up: str = "z"  # Axis that is up in the file, `y` or `z`
 
     @property
     def size(self) -> tuple[float, float, float]:
@@ -63,8 +66,8 @@ def loaded(config: CustomConfig) -> Triangles:
     """
     assert config.mesh is not None
     path = user_path(config.mesh)
-    up = config.up or ("y" if path.suffix.lower() in _GLTF_ENDINGS else "z")
-    return placed(read_mesh(path), up, config.turn, config.scale)
+    shape = read_mesh(path)
+    return placed(shape, config.up or shape.up, config.turn, config.scale)
 
 
 Part = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]
@@ -104,12 +107,15 @@ def read_mesh(path: Path) -> Triangles:
 
 
 def _from_trimesh(path: Path) -> Triangles:
-    trimesh, left_out = _trimesh(), ""
+    ending = path.suffix.lower()
+    trimesh, left_out, up, unit = _trimesh(ending), "", "z", 1.0
     try:
-        if path.suffix.lower() in _GLTF_ENDINGS:
-            content, left_out = mended_gltf(path, _LARGEST_FILE)
+        if ending in _GLTF_ENDINGS:
+            (content, left_out), up = mended_gltf(path, _LARGEST_FILE), "y"
         else:
             content = read_limited(path, _LARGEST_FILE)
+        if ending == ".dae":
+            content, up, unit = checked_collada(content)
         with warnings.catch_warnings(), _quiet("trimesh"):
             warnings.simplefilter("ignore")  # what is wrong with a file is said in our words
             parts = [_checked(part) for part in _parts(trimesh, path, content)]
@@ -122,7 +128,8 @@ def _from_trimesh(path: Path) -> Triangles:
         raise DataFileError(f"{path}: cannot read as a mesh: {error}") from None
     if not parts:
         raise DataFileError(f"{path}: holds no triangles")
-    return replace(_joined(parts), left_out=left_out)
+    shape = _joined(parts)
+    return replace(shape, points=shape.points * unit, left_out=left_out, up=up)
 
 
 @contextmanager
@@ -272,10 +279,12 @@ def _looked_up(
     return np.asarray(pixels[row, column] / 255.0 * factor)
 
 
-def _trimesh() -> ModuleType:
+def _trimesh(ending: str) -> ModuleType:
     try:
         import trimesh
     except ImportError:
         raise MissingExtraError("a target's mesh file", "mesh") from None
+    if ending == ".dae" and find_spec("collada") is None:
+        raise MissingExtraError("a COLLADA file", "mesh")
     module: ModuleType = trimesh
     return module

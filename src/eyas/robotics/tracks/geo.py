@@ -7,7 +7,6 @@ them.
 """
 
 import io
-import re
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -17,7 +16,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from eyas.engine.core.decoding import decoded_json
+from eyas.engine.core.decoding import decoded_json, decoded_xml
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
 from eyas.engine.custom.trajectory import Track, datetime_seconds
@@ -105,12 +104,10 @@ def _geometries(whole: Any) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]: 
 
 
 def _xml(path: Path, content: bytes, root: str) -> ElementTree.Element:
-    if re.search(rb"<!\s*(DOCTYPE|ENTITY)", content):
-        raise DataFileError(f"{path}: has a DOCTYPE or an ENTITY, which is not read")
     try:
-        found = ElementTree.fromstring(content)
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise DataFileError(f"{path}: not XML: {error}") from None
+        found = decoded_xml(content)
+    except ValueError as error:
+        raise DataFileError(f"{path}: {error}") from None
     if _name(found) != root:
         raise DataFileError(f"{path}: its content is <{_name(found):.40}>, not <{root}>")
     return found
