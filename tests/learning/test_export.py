@@ -10,7 +10,7 @@ onnxruntime = pytest.importorskip("onnxruntime")
 
 from eyas.engine.settings.env import EnvConfig, ObservationConfig
 from eyas.learning.export import export
-from eyas.learning.network import ACTIONS, HOVER, NetworkShape, TrackingNetwork
+from eyas.learning.network import ACTIONS, HOVER, GoalCenteredNetwork, NetworkShape, TrackingNetwork
 
 
 @pytest.mark.parametrize("memory", [False, True])
@@ -43,3 +43,25 @@ def test_onnx_gives_what_pytorch_gives(memory, size, tmp_path):
         carried = {"memory": got[1]} if memory else {}
         if memory:
             assert np.allclose(got[1], after.numpy(), atol=2e-3)
+
+
+def test_the_actor_of_gc_vat_is_that_of_pytorch(tmp_path):
+    shape = NetworkShape(3, 84, 84, hidden=32, memory=True, kind="gc-vat")
+    network = GoalCenteredNetwork(shape)
+    generator = torch.Generator().manual_seed(1)
+    network.initialise(generator)
+    torch.nn.init.normal_(network.actor.out.weight, generator=generator)
+    seen = ObservationConfig(layout="chw")
+    export(network, EnvConfig(observation=seen), tmp_path / "policy.onnx")
+    session = onnxruntime.InferenceSession(tmp_path / "policy.onnx")
+    rng = np.random.default_rng(0)
+    state, memory = torch.zeros(5, shape.state), np.zeros((5, 32), np.float32)
+    for _ in range(4):
+        picture = rng.integers(0, 256, (5, 3, 84, 84), np.uint8)
+        with torch.no_grad():
+            logits, value, after = network(torch.from_numpy(picture), state)
+        assert (logits.shape, value.shape, after.shape) == ((5, ACTIONS), (5,), (5, 64))
+        got = session.run(None, {"image": picture, "memory": memory})
+        assert np.allclose(got[0], logits.numpy(), atol=2e-2)
+        assert np.allclose(got[1], after[:, :32].numpy(), atol=2e-3)  # the actor's own
+        state, memory = network.next_state(logits.argmax(1), after), got[1]

@@ -15,7 +15,7 @@ try:
 except ImportError as error:
     raise MissingExtraError("eyas.Algorithm", "train") from error
 
-from eyas.learning.network import ACTIONS, TrackingNetwork
+from eyas.learning.network import ACTIONS, AnyNetwork
 
 if TYPE_CHECKING:  # rollouts ask here whether a teacher is wanted
     from eyas.learning.rollout import Rollout
@@ -26,7 +26,7 @@ if TYPE_CHECKING:  # rollouts ask here whether a teacher is wanted
 class Learner:
     """What learns, and with what; shared by the algorithms of a run."""
 
-    network: TrackingNetwork
+    network: AnyNetwork
     optimiser: torch.optim.Optimizer
     """Adam, of the network's parameters; its rate is set before each update."""
     config: TrainConfig

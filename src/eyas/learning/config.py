@@ -36,6 +36,13 @@ class NumberType(StrEnum):
     FASTEST = "fastest"
 
 
+class NetworkKind(StrEnum):
+    """Networks that learn flights."""
+
+    EYAS = "eyas"  # Three convolutions, a layer, perhaps a memory, and two heads
+    GC_VAT = "gc-vat"  # That of the benchmark's own method: actor and critic apart, with memories
+
+
 class TeacherKind(StrEnum):
     """Who tells the right actions."""
 
@@ -252,6 +259,8 @@ class TrainConfig(Section):
     """Norm to which gradients are cut."""
     reward_scale: Annotated[float, Field(gt=0, le=1e6)] = 0.025
     """Factor on the rewards that are learned from."""
+    network: NetworkKind = NetworkKind.EYAS
+    """The network: `eyas`, or `gc-vat`, that of the benchmark's own method, which has a memory."""
     hidden: Annotated[int, Field(ge=1, le=65536)] = 256
     """Width of the layer behind the convolutions, and of the memory."""
     memory: bool = False

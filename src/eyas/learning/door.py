@@ -10,6 +10,7 @@ HOUSE = House(
             "eyas": "eyas.learning:presets/eyas.json",
             "eyas-words": "eyas.learning:presets/eyas-words.json",
             "fast": "eyas.learning:presets/fast.json",
+            "gc-vat": "eyas.learning:presets/gc-vat.json",
             "paper": "eyas.learning:presets/paper.json",
         },
         "eyas.commands": {"train": "eyas.learning.commands:train"},

@@ -14,7 +14,14 @@ from eyas.benchmark.policies.tracker.metadata import METADATA
 from eyas.engine.core.files import write_atomic
 from eyas.engine.core.installed import installed_version
 from eyas.engine.settings.env import EnvConfig
-from eyas.learning.network import ACTIONS, HOVER, STRIDE, TrackingNetwork
+from eyas.learning.network import (
+    ACTIONS,
+    HOVER,
+    STRIDE,
+    AnyNetwork,
+    GoalCenteredNetwork,
+    TrackingNetwork,
+)
 
 _OPSET = 17
 _HALVED = 1024
@@ -71,7 +78,7 @@ class OnnxGraph:
         )
 
 
-def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
+def export(network: AnyNetwork, env: EnvConfig, path: Path) -> None:
     """Write a network.
 
     Inputs: `image`, uint8 (N, C, H, W); `last_action`, float (N, 7), a 1 at the last action, hover
@@ -86,13 +93,18 @@ def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
         helper.make_tensor_value_info("last_action", TensorProto.FLOAT, ["n", ACTIONS]),
     ]
     outputs = [helper.make_tensor_value_info("logits", TensorProto.FLOAT, ["n", ACTIONS])]
-    features = _features(graph, network)
-    if network.memory is not None:
+    if shape.memory:
         memory = ["n", shape.hidden]
         inputs.append(helper.make_tensor_value_info("memory", TensorProto.FLOAT, memory))
         outputs.append(helper.make_tensor_value_info("next_memory", TensorProto.FLOAT, memory))
-        features = _memory(graph, network, features)
-    graph.linear("logits", features, network.policy.weight, network.policy.bias)
+    if isinstance(network, GoalCenteredNetwork):
+        inputs = [one for one in inputs if one.name != "last_action"]
+        _actor(graph, network)
+    else:
+        features = _features(graph, network)
+        if network.memory is not None:
+            features = _memory(graph, network.memory, features)
+        graph.linear("logits", features, network.policy.weight, network.policy.bias)
     body = helper.make_graph(graph.nodes, "eyas", inputs, outputs, graph.weights)
     write_model(body, env, path)
 
@@ -135,10 +147,25 @@ def _features(graph: OnnxGraph, network: TrackingNetwork) -> str:
     return graph.node("Relu", [value], "features")
 
 
-def _memory(graph: OnnxGraph, network: TrackingNetwork, features: str) -> str:
-    """Add a step of the gated recurrent unit, as in `torch.nn.GRUCell`."""
-    cell = network.memory
-    assert cell is not None
+def _actor(graph: OnnxGraph, network: GoalCenteredNetwork) -> None:
+    """Add the actor of GC-VAT."""
+    actor = network.actor
+    value = graph.node("Cast", ["image"], "image.float", to=TensorProto.FLOAT)
+    scale = graph.weight("scale", np.array([1.0 / 255.0], np.float32))
+    value = graph.node("Mul", [value, scale], "pixels")
+    for name, seeing in (("first", actor.first), ("second", actor.second)):
+        value = graph.node("Relu", [graph.convolution(name, value, seeing)], f"{name}.relu")
+    value = graph.node("Flatten", [value], "seen")
+    value = graph.linear("layer", value, actor.layer.weight, actor.layer.bias)
+    value = _memory(graph, actor.memory, graph.node("Relu", [value], "features"))
+    for name, layer in (("wide", actor.wide), ("narrow", actor.narrow)):
+        value = graph.linear(name, value, layer.weight, layer.bias)
+        value = graph.node("Relu", [value], f"{name}.relu")
+    graph.linear("logits", value, actor.out.weight, actor.out.bias)
+
+
+def _memory(graph: OnnxGraph, cell: nn.GRUCell, features: str) -> str:
+    """Add a step of a gated recurrent unit, as in `torch.nn.GRUCell`."""
     given = graph.linear("given", features, cell.weight_ih, cell.bias_ih)
     kept = graph.linear("kept", "memory", cell.weight_hh, cell.bias_hh)
     names = [f"{kind}.{gate}" for kind in ("given", "kept") for gate in ("reset", "update", "new")]

@@ -8,7 +8,7 @@ from torch import Tensor, nn
 
 from eyas.engine.core.errors import ConfigError
 from eyas.lanes.shipped import features
-from eyas.learning.config import NumberType, TrainConfig
+from eyas.learning.config import NetworkKind, NumberType, TrainConfig
 
 ACTIONS = 7
 HOVER = 6  # The action that stands for "none yet"; the network sees it as zeros
@@ -29,6 +29,7 @@ class NetworkShape:
     width: int
     hidden: int
     memory: bool
+    kind: str = NetworkKind.EYAS.value
 
     def to_json(self) -> dict[str, Any]:
         """Return the numbers by name."""
@@ -37,7 +38,12 @@ class NetworkShape:
     @property
     def state(self) -> int:
         """Numbers that are carried from one decision to the next: last action, and memory."""
-        return ACTIONS - 1 + (self.hidden if self.memory else 0)
+        return ACTIONS - 1 + (self.memories * self.hidden if self.memory else 0)
+
+    @property
+    def memories(self) -> int:
+        """Memories of `hidden` numbers, one behind the other in the state."""
+        return 2 if self.kind == NetworkKind.GC_VAT else 1
 
 
 class TrackingNetwork(nn.Module):
@@ -125,26 +131,114 @@ class TrackingNetwork(nn.Module):
         memory: Tensor,  # The memory from `forward`
     ) -> Tensor:
         """Return the state for the next decision, shape (B, `shape.state`)."""
-        told = nn.functional.one_hot(action, ACTIONS)[:, :HOVER].float()
-        return torch.cat([told, memory], 1)
+        return _state_after(action, memory)
 
     def initialise(self, generator: torch.Generator) -> None:
         """Draw orthogonal weights, as is usual for this method (Andrychowicz et al. 2021)."""
-        gains: dict[nn.Module, float] = {self.policy: 0.01, self.value: 1.0}
-        for module in self.modules():
-            if isinstance(module, nn.Conv2d | nn.Linear):
-                gain = gains.get(module, 2**0.5)
-                drawn = torch.empty(module.weight.shape)  # channels first, as it must be there
-                nn.init.orthogonal_(drawn, gain, generator)
-                with torch.no_grad():
-                    module.weight.copy_(drawn)
-                assert module.bias is not None
-                nn.init.zeros_(module.bias)
-        if self.memory is not None:
-            for weight in (self.memory.weight_ih, self.memory.weight_hh):
+        _draw_orthogonal(self, {self.policy: 0.01, self.value: 1.0}, generator)
+
+
+def _state_after(action: Tensor, memory: Tensor) -> Tensor:
+    told = nn.functional.one_hot(action, ACTIONS)[:, :HOVER].float()
+    return torch.cat([told, memory], 1)
+
+
+class _Tower(nn.Module):
+    """An actor or a critic of GC-VAT, see `GoalCenteredNetwork`."""
+
+    def __init__(self, shape: NetworkShape, outputs: int) -> None:
+        super().__init__()
+        self.first = nn.Conv2d(shape.channels, 16, 8, 4)
+        self.second = nn.Conv2d(16, 32, 4, 2)
+        with torch.no_grad():
+            seen = self.seen(torch.zeros(1, shape.channels, shape.height, shape.width))
+        self.layer = nn.Linear(seen.shape[1], shape.hidden)
+        self.memory = nn.GRUCell(shape.hidden, shape.hidden)
+        self.wide, self.narrow = nn.Linear(shape.hidden, 200), nn.Linear(200, 100)
+        self.out = nn.Linear(100, outputs)
+
+    def seen(self, pixels: Tensor) -> Tensor:
+        """Return what the convolutions make of pixels from 0 to 1, shape (B, K)."""
+        return torch.relu(self.second(torch.relu(self.first(pixels)))).flatten(1)
+
+    def features(self, pixels: Tensor) -> Tensor:
+        """Return what is seen, shape (B, hidden)."""
+        return torch.relu(self.layer(self.seen(pixels)))
+
+    def head(self, features: Tensor) -> Tensor:
+        """Return what the tower answers, shape (B, outputs)."""
+        answer: Tensor = self.out(torch.relu(self.narrow(torch.relu(self.wide(features)))))
+        return answer
+
+
+class _BothMemories(nn.Module):
+    """The memories of both towers, one behind the other."""
+
+    def __init__(self, actor: _Tower, critic: _Tower) -> None:
+        super().__init__()
+        self._cells = [actor.memory, critic.memory]  # whose weights are those of the towers
+
+    def forward(self, seen: Tensor, memory: Tensor) -> Tensor:
+        """Return the memories that follow, shape (B, 2 * hidden)."""
+        parts = zip(self._cells, seen.chunk(2, 1), memory.chunk(2, 1), strict=True)
+        return torch.cat([cell(own, kept) for cell, own, kept in parts], 1)
+
+
+class GoalCenteredNetwork(nn.Module):
+    """The network of GC-VAT (R-VAT in the code of the DAT benchmark): an actor and a critic that
+    share nothing, each of two convolutions (16 of 8x8 with stride 4, 32 of 4x4 with stride 2), a
+    layer, a gated recurrent unit of the same width, layers of 200 and 100 and an output. It does
+    not see its last action. It offers what `TrackingNetwork` does.
+    """
+
+    def __init__(self, shape: NetworkShape) -> None:
+        super().__init__()
+        self.shape = shape
+        self.actor, self.critic = _Tower(shape, ACTIONS), _Tower(shape, 1)
+        self.memory = _BothMemories(self.actor, self.critic)
+
+    def forward(self, picture: Tensor, state: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """Return logits (B, 7), values (B,) and the memories that follow (B, 2 * hidden)."""
+        seen = self.features(picture, state[:, : ACTIONS - 1])
+        memory: Tensor = self.memory(seen, state[:, ACTIONS - 1 :])
+        return *self.heads(memory), memory
+
+    def features(self, picture: Tensor, told: Tensor) -> Tensor:
+        """Return what both see, shape (B, 2 * hidden)."""
+        pixels = picture.to(torch.float32) / 255.0
+        return torch.cat([self.actor.features(pixels), self.critic.features(pixels)], 1)
+
+    def heads(self, features: Tensor) -> tuple[Tensor, Tensor]:
+        """Return logits (B, 7) and values (B,)."""
+        own, worth = features.chunk(2, 1)
+        return self.actor.head(own), self.critic.head(worth)[:, 0]
+
+    def next_state(self, action: Tensor, memory: Tensor) -> Tensor:
+        """Return the state for the next decision, shape (B, `shape.state`)."""
+        return _state_after(action, memory)
+
+    def initialise(self, generator: torch.Generator) -> None:
+        """Draw orthogonal weights, of the outputs small ones for the actor."""
+        _draw_orthogonal(self, {self.actor.out: 0.01, self.critic.out: 1.0}, generator)
+
+
+def _draw_orthogonal(
+    network: nn.Module, gains: dict[nn.Module, float], generator: torch.Generator
+) -> None:
+    for module in network.modules():
+        if isinstance(module, nn.Conv2d | nn.Linear):
+            gain = gains.get(module, 2**0.5)
+            drawn = torch.empty(module.weight.shape)  # channels first, as it must be there
+            nn.init.orthogonal_(drawn, gain, generator)
+            with torch.no_grad():
+                module.weight.copy_(drawn)
+            assert module.bias is not None
+            nn.init.zeros_(module.bias)
+        elif isinstance(module, nn.GRUCell):
+            for weight in (module.weight_ih, module.weight_hh):
                 nn.init.orthogonal_(weight, 1.0, generator)
-            nn.init.zeros_(self.memory.bias_ih)
-            nn.init.zeros_(self.memory.bias_hh)
+            nn.init.zeros_(module.bias_ih)
+            nn.init.zeros_(module.bias_hh)
 
 
 def fastest_numbers(device: torch.device) -> NumberType:
@@ -156,8 +250,13 @@ def fastest_numbers(device: torch.device) -> NumberType:
     return NumberType.BFLOAT16 if multiplies else NumberType.FLOAT32
 
 
-def network_of(shape: NetworkShape, config: TrainConfig) -> TrackingNetwork:
+AnyNetwork = TrackingNetwork | GoalCenteredNetwork
+
+
+def network_of(shape: NetworkShape, config: TrainConfig) -> AnyNetwork:
     """Return a new network that learns by some settings."""
+    if shape.kind == NetworkKind.GC_VAT:
+        return GoalCenteredNetwork(shape)
     short = config.number_type is NumberType.BFLOAT16
     return TrackingNetwork(shape, channels_last=config.channels_last, bfloat16=short)
 

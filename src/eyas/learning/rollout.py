@@ -19,7 +19,7 @@ from eyas.engine.policies.policy import PolicyInput, Start
 from eyas.engine.settings.config import EyasConfig
 from eyas.learning.algorithm import phases_of
 from eyas.learning.config import TeacherKind, TrainConfig
-from eyas.learning.network import TrackingNetwork, torch_device
+from eyas.learning.network import AnyNetwork, torch_device
 
 
 class _ExactOracle(SightOracle):
@@ -138,7 +138,7 @@ class Roller:
         network: Chooses the actions.
     """
 
-    def __init__(self, config: EyasConfig, network: TrackingNetwork) -> None:
+    def __init__(self, config: EyasConfig, network: AnyNetwork) -> None:
         count = TrainConfig.of(config).environments // TrainConfig.of(config).shards
         taught = any(phase.algorithm.taught for phase in phases_of(TrainConfig.of(config)))
         self._teacher = Teacher(config, count) if taught else None

@@ -14,7 +14,7 @@ from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.settings.config import EyasConfig
 from eyas.lanes import limit_threads
 from eyas.learning.config import TrainConfig
-from eyas.learning.network import NetworkShape, TrackingNetwork, network_of
+from eyas.learning.network import AnyNetwork, NetworkShape, network_of
 from eyas.learning.rollout import Finished, Roller, Rollout
 
 Job = TypeVar("Job")
@@ -55,14 +55,14 @@ class Shards(Protocol):
         """Give back what the environments hold."""
 
 
-MakeShards = Callable[[EyasConfig, TrackingNetwork], Shards]
+MakeShards = Callable[[EyasConfig, AnyNetwork], Shards]
 """Makes the environments for the settings of a stage, and for the network that flies."""
 
 
 class LocalShards:
     """Shards in threads of this process."""
 
-    def __init__(self, config: EyasConfig, network: TrackingNetwork) -> None:
+    def __init__(self, config: EyasConfig, network: AnyNetwork) -> None:
         self._rollers = [Roller(config, network) for _ in range(TrainConfig.of(config).shards)]
         self._threads = TorchThreads(TrainConfig.of(config).shards)
 
@@ -112,7 +112,7 @@ class RayShards:
         ConfigError: The cluster has fewer cores than there are shards.
     """
 
-    def __init__(self, ray: Any, config: EyasConfig, network: TrackingNetwork) -> None:  # noqa: ANN401
+    def __init__(self, ray: Any, config: EyasConfig, network: AnyNetwork) -> None:  # noqa: ANN401
         _check_cores(int(ray.cluster_resources().get("CPU", 0)), TrainConfig.of(config).shards)
         self._ray, self._config, self._network = ray, config, network
         self._worker = ray.remote(num_cpus=1)(_Worker)

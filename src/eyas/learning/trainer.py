@@ -29,11 +29,11 @@ from eyas.engine.settings.env import ActionKind, EnvConfig, ObservationPart
 from eyas.engine.world.maps import MAPS
 from eyas.learning.algorithm import Learner, phases_of
 from eyas.learning.checkpoint import RunFolder, Stateful, TrainingProgress
-from eyas.learning.config import ALGORITHMS, NumberType, Stage, TrainConfig
+from eyas.learning.config import ALGORITHMS, NetworkKind, NumberType, Stage, TrainConfig
 from eyas.learning.export import export
 from eyas.learning.network import (
+    AnyNetwork,
     NetworkShape,
-    TrackingNetwork,
     fastest_numbers,
     network_of,
     torch_device,
@@ -284,7 +284,11 @@ def _shape(config: EyasConfig) -> NetworkShape:
         raise ConfigError("env.observation: too small to be trained: at least 20x20 pixels")
     train = TrainConfig.of(config)
     channels, height, width = shape
-    return NetworkShape(channels, height, width, train.hidden, train.memory)
+    if train.network is NetworkKind.GC_VAT and not (train.memory and min(height, width) >= 36):
+        raise ConfigError(
+            "train.network: 'gc-vat' needs train.memory=true and pictures of 36x36 pixels or more"
+        )
+    return NetworkShape(channels, height, width, train.hidden, train.memory, train.network.value)
 
 
 class _NetworkPolicy:
@@ -293,7 +297,7 @@ class _NetworkPolicy:
     sampled = False
     told: frozenset[str] = frozenset()
 
-    def __init__(self, network: TrackingNetwork, env: EnvConfig) -> None:
+    def __init__(self, network: AnyNetwork, env: EnvConfig) -> None:
         self.env = env
         self._network = network
         self._state = torch.zeros(0)
@@ -312,7 +316,7 @@ class _NetworkPolicy:
         return Decision(action.numpy())
 
 
-def evaluated(network: TrackingNetwork, config: EyasConfig) -> EvaluationScores:
+def evaluated(network: AnyNetwork, config: EyasConfig) -> EvaluationScores:
     """Return how the network does, on this processor, in the episodes of `train.evaluation`."""
     episodes, protocol = evaluation_episodes(config)
     env = config.env.model_copy(update={"mixture": ()})
