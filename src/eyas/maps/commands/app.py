@@ -52,20 +52,31 @@ def draw_gallery(
 
 @app.command("import")
 def import_map(
-    file: Annotated[Path, typer.Argument(help="OpenStreetMap: .osm, .osm.gz or .osm.pbf.")],
+    file: Annotated[
+        Path, typer.Argument(help="OpenStreetMap: .osm, .osm.gz, .osm.bz2 or .osm.pbf.")
+    ],
     name: Annotated[str | None, typer.Option("--name", help="Name of the map.")] = None,
     out: Annotated[Path | None, to_write("Folder of the map; then use --map FOLDER.")] = None,
     bbox: Annotated[
         str | None, typer.Option("--bbox", help="Only WEST,SOUTH,EAST,NORTH, in degrees.")
     ] = None,
+    drive_on: Annotated[
+        str | None,
+        typer.Option("--drive-on", help="left or right; by default as the file or the place says."),
+    ] = None,
     traffic: Annotated[bool, typer.Option(help="Record the traffic now, not on first use.")] = True,
     overwrite: Overwrite = False,
 ) -> None:
     """Make a map of an OpenStreetMap file; use it with --map NAME, or --map DIR with --out DIR."""
+    from eyas.maps.osm.driving_side import SIDES
     from eyas.maps.osm.importing import run
 
     bounds = _bounds(bbox)
-    report = run(file, name, out=out, bounds=bounds, record=traffic, overwrite=overwrite)
+    if drive_on not in (None, *SIDES):
+        raise ConfigError(f"--drive-on: {drive_on!r} is not allowed; allowed: left, right")
+    report = run(
+        file, name, out=out, bounds=bounds, drive_on=drive_on, record=traffic, overwrite=overwrite
+    )
     for line in report.lines():
         typer.echo(line)
 
