@@ -71,7 +71,7 @@ class RoadNetwork:
     lane_edge: NDArray[np.int32]
     """Index into `edges` of each lane, shape (L,)."""
     lane_index: NDArray[np.int32]
-    """0 is the lane of its edge at the kerb, the rightmost where traffic keeps right, shape (L,)."""
+    """0 is the lane of its edge at the kerb, shape (L,)."""
     edges: tuple[str, ...]
     """Names of the edges, as in the graph."""
     edge_start: tuple[str, ...]

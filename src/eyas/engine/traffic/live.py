@@ -207,7 +207,7 @@ class LiveSumo:
         lamps: bool = False,  # Whether they signal, as SUMO has it
     ) -> None:
         _check_alone()
-        fleet = fleet_of(config, WARM_UP + duration)
+        fleet = fleet_of(config, WARM_UP + duration, town=bool(graph.finished))
         self._run = SumoRun(roads_for(config, graph), config, fleet, cover)
         self._end = weakref.finalize(self, self._run.close)
         self._lasting = config.demand is Demand.KEEP_ALIVE
@@ -228,7 +228,7 @@ class LiveSumo:
         for _ in range(round(WARM_UP * RATE) - 1):
             self._run.advance()
         self.prepare(0.0)
-        if self._lasting and not self._tracks.present[0].all():
+        if self._lasting and not graph.finished and not self._tracks.present[0].all():
             self.close()
             raise no_room(self._tracks.present[0])
         global _running

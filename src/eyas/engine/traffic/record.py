@@ -49,9 +49,10 @@ def record(
     cover = cover if config.drivers is not Drivers.NORMAL else ()
     origin = provenance(map_name, map_seed, graph_hash(graph), config, duration, cover)
     span = (WARM_UP, WARM_UP + duration)
-    fleet = fleet_of(config, span[1])
-    raw = drive(roads_for(config, graph), config, fleet, cover, span, progress)
-    return _as_recording(raw, origin)
+    town = bool(graph.finished)
+    fleet = fleet_of(config, span[1], town=town)
+    raw = drive(roads_for(config, graph), config, fleet, cover, span, progress, everyone=not town)
+    return as_recording(raw, origin)
 
 
 def roads_for(config: TrafficConfig, graph: RoadGraph) -> bytes:
@@ -121,7 +122,8 @@ def provenance(
     )
 
 
-def _as_recording(raw: Drive, origin: Provenance) -> TrafficRecording:
+def as_recording(raw: Drive, origin: Provenance) -> TrafficRecording:
+    """Return what SUMO has driven as a recording."""
     position = np.zeros_like(raw.position)
     yaw = np.zeros_like(raw.yaw)
     for actor in range(raw.present.shape[1]):

@@ -37,14 +37,11 @@ class Entrance:
         sumo: ModuleType,
         fleet: Iterator[Departure],  # The vehicles, the earliest first
         actors: Sequence[VehicleType],  # Class of each actor: there is room for so many vehicles
-        demand: Demand,  # When vehicles enter and leave
     ) -> None:
         self.entered: list[VehicleType] = []
         self._sumo = sumo
         self._fleet = fleet
         self._room = Counter(actors)
-        # Vehicles that never leave start anywhere; those of a group start where an edge begins.
-        self._place = "random_free" if demand is Demand.KEEP_ALIVE else "base"
         self._waiting = {name: deque[Departure]() for name in self._room}
         self._next = next(fleet, None)
 
@@ -56,7 +53,12 @@ class Entrance:
             name = str(len(self.entered))
             self._sumo.route.add(name, entry.route)
             self._sumo.vehicle.add(
-                name, name, entry.vehicle_type.value, departLane="best", departPos=self._place
+                name,
+                name,
+                entry.vehicle_type.value,
+                departLane="best",
+                departPos=entry.place,
+                departSpeed=entry.speed,
             )
             self.entered.append(entry.vehicle_type)
             self._room[entry.vehicle_type] -= 1
@@ -172,6 +174,8 @@ def drive(
     span: tuple[float, float],  # First and last time of the samples [s]
     # Called with the completed share, 0 to 1, each simulated second
     progress: Callable[[float], None] | None,
+    *,
+    everyone: bool = True,  # Whether all who never leave must find room
 ) -> Drive:
     """Run SUMO and return the poses of its vehicles.
 
@@ -187,8 +191,8 @@ def drive(
             run.advance()
             if step >= skipped:
                 run.read(result, step - skipped)
-            everyone = config.demand is Demand.RESPAWN or result.present[0].all()
-            if step == skipped and not everyone:
+            needed = everyone and config.demand is Demand.KEEP_ALIVE
+            if step == skipped and needed and not result.present[0].all():
                 raise no_room(result.present[0])
             if progress and step % RATE == 0:
                 progress(step / steps)
@@ -248,7 +252,7 @@ class SumoRun:
             length = {name: self.sumo.vehicletype.getLength(name.value) for name in classes}
             self.vehicle_length = np.array([length[name] for name in self.actors], np.float64)
             links = {name: _read_links(self.sumo, name) for name in classes}
-            self._entrance = Entrance(self.sumo, fleet(links), self.actors, config.demand)
+            self._entrance = Entrance(self.sumo, fleet(links), self.actors)
             usual = config.drivers is Drivers.NORMAL
             self._manoeuvres = None if usual else Manoeuvres(self.sumo, config, cover, links)
             self._stack = stack.pop_all()

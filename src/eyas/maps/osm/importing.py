@@ -41,6 +41,7 @@ from eyas.engine.traffic.net_file import (
     signalled_edges,
 )
 from eyas.engine.traffic.network import graph_hash
+from eyas.engine.traffic.recording_file import RecordingFile
 from eyas.engine.world.build.millimetres import snapped
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE, NETWORK_FILE, PLAN_FILE, TRAFFIC_FILE
@@ -58,6 +59,7 @@ from eyas.maps.osm.rings import OsmShapes
 from eyas.maps.osm.streets import is_street, osm_network, street_file
 from eyas.maps.plan.file import write_plan
 from eyas.maps.plan.plan import MapPlan, Roads
+from eyas.maps.traffic.about import coverage
 
 
 @dataclass(slots=True)
@@ -82,6 +84,7 @@ class Report:
     """Number of things that are not on the map, by what and why."""
     side: str = ""  # The side of the road on which one drives, and how that is known
     traffic: str = ""  # What was recorded, or why nothing was
+    notices: tuple[str, ...] = ("© OpenStreetMap contributors",)
     seconds: float = 0.0
 
     @property
@@ -104,7 +107,7 @@ class Report:
             if counted:
                 parts = ", ".join(f"{count} {what}" for what, count in sorted(counted.items()))
                 made.append(f"{word}: {parts}")
-        return [*made, self.side, self.traffic, "© OpenStreetMap contributors"]
+        return [*made, self.side, self.traffic, *self.notices]
 
 
 ATTRIBUTION = """\
@@ -147,9 +150,9 @@ def run(
         EyasError: The file is damaged, or the map cannot be made or written.
     """
     begun = time.monotonic()
-    name = _name(name if name is not None else re.sub(r"\.osm(\.\w+)?$|\.pbf$", "", path.name))
+    name = name_of(name if name is not None else re.sub(r"\.osm(\.\w+)?$|\.pbf$", "", path.name))
     folder = (out if out is not None else maps_folder() / name).absolute()
-    _check_free(folder, name, overwrite=overwrite, own=out is None)
+    check_free(folder, name, overwrite=overwrite, own=out is None)
     report = Report(name, folder, registered=out is None)
     data = read_osm(path)
     place = _place(data, bounds, str(path))
@@ -157,17 +160,18 @@ def run(
     survey = _survey(data, place, streets, report)
     origin = Origin(
         name, f"Imported from OpenStreetMap: {path.name}", path.name,
-        round((place.projection.longitude + 180.0) % 360.0 - 180.0, 7), place.projection.latitude, place.size,
+        round((place.projection.longitude + 180.0) % 360.0 - 180.0, 7),
+        place.projection.latitude, place.size,
     )  # fmt: skip
-    _write(folder, streets, _plan(origin, survey), origin)
+    write_map(folder, streets, _plan(origin, survey), origin)
     if out is None:
         register_map(name)
-    report.traffic = _recorded(streets.graph, folder, record=record)
+    report.traffic = recorded(streets, folder, record=record)
     report.seconds = time.monotonic() - begun
     return report
 
 
-def _name(text: str) -> str:
+def name_of(text: str) -> str:
     """Return a name that a map can have."""
     name = re.sub(r"\W+", "-", text).strip("-")
     if not name:
@@ -175,7 +179,15 @@ def _name(text: str) -> str:
     return name
 
 
-def _check_free(folder: Path, name: str, *, overwrite: bool, own: bool) -> None:
+def check_free(folder: Path, name: str, *, overwrite: bool, own: bool) -> None:
+    """Refuse a folder that holds something else, or a map that is not to be replaced.
+
+    Args:
+        own: Whether the folder is that of the name.
+
+    Raises:
+        EyasError: It is refused.
+    """
     if own and name in MAPS.built_in:
         raise ConfigError(f"--name: {name!r} is a map of Eyas; choose another name")
     if not folder.exists():
@@ -248,7 +260,7 @@ def _side(data: OsmData, place: _Place, asked: str | None, report: Report) -> st
     return side
 
 
-class _Streets(NamedTuple):
+class Streets(NamedTuple):
     """The streets, as netconvert has made them."""
 
     graph: RoadGraph  # holds the bytes of SUMO's file
@@ -256,7 +268,7 @@ class _Streets(NamedTuple):
     network: RoadNetwork
 
 
-def _streets(data: OsmData, place: _Place, side: str, report: Report) -> _Streets:
+def _streets(data: OsmData, place: _Place, side: str, report: Report) -> Streets:
     """Return the streets for cars within the area."""
     left_hand = side == "left"
     cut = street_file(
@@ -278,10 +290,10 @@ def _streets(data: OsmData, place: _Place, side: str, report: Report) -> _Street
     report.size, report.lanes, report.signals = (
         place.size, len(network.lane_width), len(net.programs),
     )  # fmt: skip
-    return _Streets(graph, net, network)
+    return Streets(graph, net, network)
 
 
-def _survey(data: OsmData, place: _Place, streets: _Streets, report: Report) -> Survey:
+def _survey(data: OsmData, place: _Place, streets: Streets, report: Report) -> Survey:
     """Return everything but the streets, and count what is not told."""
 
     def odd(key: str) -> None:
@@ -322,7 +334,9 @@ def _plan(origin: Origin, survey: Survey) -> MapPlan:
     )
 
 
-def _write(folder: Path, streets: _Streets, plan: MapPlan, origin: Origin) -> None:
+def write_map(
+    folder: Path, streets: Streets, plan: MapPlan, origin: Origin, attribution: str = ATTRIBUTION
+) -> None:
     """Write the map, in the place of what the folder holds."""
     with refusals(folder):
         if folder.exists():
@@ -331,7 +345,7 @@ def _write(folder: Path, streets: _Streets, plan: MapPlan, origin: Origin) -> No
     write_atomic(folder / ROADS_FILE, gzip.compress(streets.graph.finished, mtime=0))
     save_network(folder / NETWORK_FILE, streets.network)
     write_plan(folder / PLAN_FILE, plan)
-    write_atomic(folder / ATTRIBUTION_FILE, ATTRIBUTION.encode())
+    write_atomic(folder / ATTRIBUTION_FILE, attribution.encode())
     kept = (ROADS_FILE, NETWORK_FILE, PLAN_FILE, ATTRIBUTION_FILE)
     flushed(folder / name for name in kept)
     origin = replace(origin, checksums={name: sum_of(folder / name) for name in kept})
@@ -340,14 +354,14 @@ def _write(folder: Path, streets: _Streets, plan: MapPlan, origin: Origin) -> No
     MAPS.forget()
 
 
-def _recorded(graph: RoadGraph, folder: Path, *, record: bool) -> str:
+def recorded(streets: Streets, folder: Path, *, record: bool) -> str:
     """Record the canonical traffic; return a sentence about it."""
     if not record:
         return "traffic: recorded on first use"
     try:
         with sumo_progress() as progress:
-            record_canonical(graph, folder / TRAFFIC_FILE, progress=progress)
+            record_canonical(streets.graph, folder / TRAFFIC_FILE, progress=progress)
+        return coverage(RecordingFile.read(folder / TRAFFIC_FILE).load(), streets.network)
     except EyasError as error:
         Console(stderr=True).print(f"no traffic recorded: {error}", markup=False, soft_wrap=True)
-        return "traffic: none recorded; try fewer vehicles with --set traffic.max_vehicles=10"
-    return "traffic: 40 cars for 21 minutes, recorded with SUMO; other traffic on first use"
+        return "traffic: none recorded; targets that walk need none: --set target=PEDESTRIAN"

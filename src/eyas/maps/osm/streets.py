@@ -1,18 +1,20 @@
 """The streets of OpenStreetMap: cut to an area, made clean, and put through SUMO's netconvert."""
 
-import math
 import re
 import subprocess
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, pairwise
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
+
+import numpy as np
 
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.scratch import scratch
 from eyas.engine.traffic.network import without_comments
 from eyas.engine.traffic.sumo_install import sumo_binary, sumo_environment
+from eyas.lanes import exact
 from eyas.maps.osm.measures import Odd, number
 from eyas.maps.osm.reader import Bounds, OsmData, Tags, Way
 
@@ -62,8 +64,10 @@ def street_file(
                 pieces.append((way.id if k == 0 else -way.id - k, nodes, tags))
             if len(pieces) == count:
                 left_out("streets beyond the area")
-    for _ in range(_apart([nodes for _, nodes, _ in pieces])):
-        left_out("streets without a way to the others")
+    together = _together([nodes for _, nodes, _ in pieces], cutter.places)
+    for _ in range(together.count(False)):
+        left_out("short streets without a way to others")
+    pieces = [piece for piece, kept in zip(pieces, together, strict=True) if kept]
     used = dict.fromkeys(node for _, nodes, _ in pieces for node in nodes)
     for node in used:
         east, north = cutter.places[node]
@@ -181,9 +185,7 @@ class _Cutter:
             low, high = max(low, near), min(high, far)
         if low >= high:
             return None
-        long = _DEGREE * math.hypot(there[1] - here[1],
-                                    (there[0] - here[0]) * math.cos(math.radians(here[1])))  # fmt: skip
-        if (high - low) * long < _STUB and (low, high) != (0.0, 1.0):
+        if (high - low) * _distance(here, there) < _STUB and (low, high) != (0.0, 1.0):
             return None
         first = start if low == 0.0 else self._node(here, there, low)
         last = end if high == 1.0 else self._node(here, there, high)
@@ -196,8 +198,13 @@ class _Cutter:
         return self._next - 1
 
 
-def _apart(pieces: Sequence[Sequence[int]]) -> int:
-    """Return how many pieces do not hang together with the most, which netconvert leaves out."""
+_LEAST = 80.0  # Streets that hang together with no others are left out if shorter [m]
+
+
+def _together(
+    pieces: Sequence[Sequence[int]], places: Mapping[int, tuple[float, float]]
+) -> list[bool]:
+    """Return whether each piece hangs together with streets of some length."""
     root: dict[int, int] = {}
 
     def find(node: int) -> int:
@@ -209,8 +216,18 @@ def _apart(pieces: Sequence[Sequence[int]]) -> int:
     for nodes in pieces:
         for node in nodes[1:]:
             root[find(node)] = find(nodes[0])
-    counted = Counter(find(nodes[0]) for nodes in pieces)
-    return len(pieces) - max(counted.values(), default=0)
+    length = Counter[int]()
+    for nodes in pieces:
+        long = sum(_distance(places[a], places[b]) for a, b in pairwise(nodes))
+        length[find(nodes[0])] += round(long)
+    most = max(length.values(), default=0)
+    return [length[find(nodes[0])] >= min(_LEAST, most) for nodes in pieces]
+
+
+def _distance(here: tuple[float, float], there: tuple[float, float]) -> float:
+    """Return about how far two places are from each other [m]."""
+    east = (there[0] - here[0]) * float(exact.cos(np.radians(here[1])))
+    return _DEGREE * float(exact.hypot(there[1] - here[1], east))
 
 
 def _restrictions(data: OsmData, ways: set[int], nodes: dict[int, None]) -> Iterator[str]:
@@ -235,9 +252,8 @@ _TYPES = ("osmNetconvert.typ.xml", "osmNetconvertUrbanDe.typ.xml")
 
 OPTIONS = {
     "--offset.disable-normalization": "true",
-    # Streets for cars that hang together, with sidewalks as tagged.
+    # Streets for cars, with sidewalks as tagged.
     "--keep-edges.by-vclass": "passenger",
-    "--keep-edges.components": "1",
     "--osm.sidewalks": "true",
     "--walkingareas": "true",
     # Crossings, with lights for those on foot, only where there are traffic lights.
