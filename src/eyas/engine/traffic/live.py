@@ -207,8 +207,9 @@ class LiveSumo:
         lamps: bool = False,  # Whether they signal, as SUMO has it
     ) -> None:
         _check_alone()
-        fleet = fleet_of(config, WARM_UP + duration, town=bool(graph.finished))
-        self._run = SumoRun(roads_for(config, graph), config, fleet, cover)
+        town = bool(graph.finished)
+        fleet = fleet_of(config, WARM_UP + duration, town=town)
+        self._run = SumoRun(roads_for(config, graph), config, fleet, cover, town=town)
         self._end = weakref.finalize(self, self._run.close)
         self._lasting = config.demand is Demand.KEEP_ALIVE
         self._terrain = terrain
@@ -228,7 +229,7 @@ class LiveSumo:
         for _ in range(round(WARM_UP * RATE) - 1):
             self._run.advance()
         self.prepare(0.0)
-        if self._lasting and not graph.finished and not self._tracks.present[0].all():
+        if self._lasting and not town and not self._tracks.present[0].all():
             self.close()
             raise no_room(self._tracks.present[0])
         global _running

@@ -1,6 +1,7 @@
 """Recording of traffic that SUMO simulates according to the settings."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.metadata import version
 
 import numpy as np
@@ -50,8 +51,9 @@ def record(
     origin = provenance(map_name, map_seed, graph_hash(graph), config, duration, cover)
     span = (WARM_UP, WARM_UP + duration)
     town = bool(graph.finished)
+    origin = replace(origin, options=options(config, town=town))
     fleet = fleet_of(config, span[1], town=town)
-    raw = drive(roads_for(config, graph), config, fleet, cover, span, progress, everyone=not town)
+    raw = drive(roads_for(config, graph), config, fleet, cover, span, progress, town=town)
     return as_recording(raw, origin)
 
 

@@ -117,9 +117,13 @@ _SLOW = 10.0
 """Below it, drivers who decide twice a second exceed their maximum until they decide again: of 5
 m/s by up to 5 m/s, 0.4 % of the time [m/s]."""
 
+_PATIENT = ("--time-to-teleport", "-1")  # Never teleport a vehicle out of a jam or an accident
+
+_STUCK = ("--time-to-teleport", "150", "--time-to-teleport.remove", "true")
+"""In streets that no recipe has drawn, who has stood for so long, longer than any red light, is
+taken away [s]: else all of Kingsway, a junction in Manchester, stands after some minutes."""
+
 _OPTIONS = (
-    # Never teleport a vehicle out of a jam or an accident.
-    *("--time-to-teleport", "-1"),
     *("--collision.action", "none"),
     *("--no-warnings", "true"),
     *("--no-step-log", "true"),
@@ -159,11 +163,12 @@ class Drive:
         )
 
 
-def options(config: TrafficConfig) -> tuple[str, ...]:
+def options(config: TrafficConfig, *, town: bool = False) -> tuple[str, ...]:
     """Return SUMO's options, except the network, the seed and the step length."""
     seldom = config.demand is Demand.KEEP_ALIVE and config.max_speed >= _SLOW
     # Vehicles move gradually to the next lane instead of jumping 3.5 m in one step.
-    return ("--lateral-resolution", "0.8", *(_SELDOM if seldom else ()), *_OPTIONS)
+    jams = _STUCK if town else _PATIENT
+    return ("--lateral-resolution", "0.8", *(_SELDOM if seldom else ()), *jams, *_OPTIONS)
 
 
 def drive(
@@ -175,7 +180,7 @@ def drive(
     # Called with the completed share, 0 to 1, each simulated second
     progress: Callable[[float], None] | None,
     *,
-    everyone: bool = True,  # Whether all who never leave must find room
+    town: bool = False,  # Whether no recipe has drawn the roads, so that not all may find room
 ) -> Drive:
     """Run SUMO and return the poses of its vehicles.
 
@@ -185,13 +190,13 @@ def drive(
             for all who never leave: told before the whole time is simulated.
     """
     skipped, steps = round(span[0] * RATE), round(span[1] * RATE)
-    with closing(SumoRun(network, config, fleet, cover)) as run:
+    with closing(SumoRun(network, config, fleet, cover, town=town)) as run:
         result = Drive.create(steps - skipped + 1, run.actors, run.vehicle_length)
         for step in range(1, steps + 1):
             run.advance()
             if step >= skipped:
                 run.read(result, step - skipped)
-            needed = everyone and config.demand is Demand.KEEP_ALIVE
+            needed = not town and config.demand is Demand.KEEP_ALIVE
             if step == skipped and needed and not result.present[0].all():
                 raise no_room(result.present[0])
             if progress and step % RATE == 0:
@@ -242,13 +247,15 @@ class SumoRun:
         config: TrafficConfig,  # Settings of the traffic; the seed is a number
         fleet: Fleet,  # The vehicles
         cover: Cover = (),  # The stretches of lanes in which drivers hide
+        *,
+        town: bool = False,  # Whether no recipe has drawn the roads
     ) -> None:
         self.actors = vehicle_types(config)
         classes = tuple(dict.fromkeys(self.actors))
         self._slots = ActorSlots(self.actors)
         self._steps = 0
         with ExitStack() as stack:
-            self.sumo = stack.enter_context(_simulation(network, config, classes))
+            self.sumo = stack.enter_context(_simulation(network, config, classes, town=town))
             length = {name: self.sumo.vehicletype.getLength(name.value) for name in classes}
             self.vehicle_length = np.array([length[name] for name in self.actors], np.float64)
             links = {name: _read_links(self.sumo, name) for name in classes}
@@ -299,7 +306,7 @@ class SumoRun:
 
 @contextmanager
 def _simulation(
-    network: bytes, config: TrafficConfig, classes: Sequence[VehicleType]
+    network: bytes, config: TrafficConfig, classes: Sequence[VehicleType], *, town: bool = False
 ) -> Iterator[ModuleType]:
     sumo = import_libsumo()
     if sumo.simulation.isLoaded():
@@ -313,7 +320,7 @@ def _simulation(
         types.write_text(f"<additional>{lines}</additional>")
         files = ("--net-file", str(roads), "--additional-files", str(types))
         clock = ("--step-length", str(1 / RATE), "--seed", str(config.seed))
-        sumo.start(["sumo", *files, *clock, *options(config)])
+        sumo.start(["sumo", *files, *clock, *options(config, town=town)])
         try:
             yield sumo
         finally:

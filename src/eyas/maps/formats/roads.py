@@ -40,7 +40,7 @@ def _files_of_network(
         ("end", f"{duration:g}"),
         ("step-length", f"{1 / RATE:g}"),
         ("seed", str(config.seed)),
-        *_pairs(options(config)),
+        *_pairs(options(config, town=town)),
     ]
     settings = "\n".join(f'<{key} value="{value}"/>' for key, value in told)
     return {

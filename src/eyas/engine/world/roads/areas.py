@@ -161,7 +161,10 @@ def _split(shape: shapely.Geometry, cell: float) -> list[shapely.Polygon]:
     squares = shapely.box(x, y, x + cell, y + cell)
     squares = squares[shapely.intersects(shape, squares)]
     cut = ~shapely.contains_properly(shape, squares)
-    squares[cut] = shapely.intersection(shape, squares[cut])
+    try:
+        squares[cut] = shapely.intersection(shape, squares[cut])
+    except shapely.GEOSException:  # outlines of real places may touch themselves once rounded
+        squares[cut] = shapely.intersection(shapely.make_valid(shape), squares[cut])
     return polygons_of(squares)
 
 
