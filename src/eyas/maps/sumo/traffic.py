@@ -88,7 +88,7 @@ def _driven(
     lengths: list[float] = []
     free: dict[VehicleType, list[int]] = {name: [] for name in VehicleType}
     taken: dict[str, int] = {}  # Actor of each vehicle in the world; -1: it is left out
-    poses: list[tuple[int, int, float, float, float]] = []
+    room = Drive.create(samples, (VehicleType.PASSENGER,) * _MOST, np.zeros(_MOST))
     for step in range(1, skipped + samples):
         sumo.simulationStep()
         here = sumo.vehicle.getIDList()
@@ -103,20 +103,17 @@ def _driven(
                     yaw = float(np.radians(90.0 - sumo.vehicle.getAngle(name)))
                     east, north = sumo.vehicle.getPosition(name)
                     half = 0.5 * sumo.vehicle.getLength(name)
-                    x, y = east - half * exact.cos(yaw), north - half * exact.sin(yaw)
-                    poses.append((row, actor, x, y, yaw))
+                    place = east - half * exact.cos(yaw), north - half * exact.sin(yaw)
+                    room.position[row, actor], room.yaw[row, actor] = place, yaw
+                    room.present[row, actor] = True
         for name in sorted(gone):
             if (actor := taken.pop(name)) >= 0:
                 free[classes[actor]].append(actor)
         if step % RATE == 0:
             progress(step / (skipped + samples))
-    drive = Drive.create(samples, tuple(classes), np.array(lengths))
-    if poses:
-        row, actor, x, y, yaw = np.array(poses).T
-        at = row.astype(np.int64), actor.astype(np.int64)
-        drive.position[at], drive.yaw[at] = np.stack([x, y], axis=-1), yaw
-        drive.present[at] = True
-    return drive
+    count, length = len(classes), np.array(lengths)
+    position, yaws = room.position[:, :count], room.yaw[:, :count]
+    return Drive(position, yaws, room.present[:, :count], tuple(classes), length)
 
 
 def _actor(
