@@ -1,6 +1,7 @@
 """The import of a network of SUMO, with its traffic: roads as they are, buildings along them."""
 
 import time
+from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -42,6 +43,7 @@ _FASTEST = 17.0  # Streets with a higher limit have no buildings [m/s]
 _SETBACK = 5.0  # From the kerb to the houses [m]
 _FRONT, _DEEP, _GAP = (11.0, 24.0), (10.0, 14.0), (3.0, 16.0)
 """Length along the street, depth, and distance to the next, of the houses [m]."""
+_CELL, _ROUND = 30.0, (-1, 0, 1)  # Side of the cells in which houses look for others [m]
 _FROM_END = 12.0  # From the end of a street to its first house [m]
 
 
@@ -150,6 +152,7 @@ def _houses(network: RoadNetwork, survey: Survey) -> list[House]:
     tree = shapely.STRtree(polygons_of(taken))
     speeds = {int(edge): network.lane_speed[k] for k, edge in enumerate(network.lane_edge)}
     made: list[House] = []
+    beside: dict[tuple[int, int], list[shapely.Polygon]] = defaultdict(list)  # By cells
     for edge, street in enumerate(streets(network)):
         kerb = shapely.LineString(street.right)
         if speeds[edge] > _FASTEST:
@@ -169,13 +172,12 @@ def _houses(network: RoadNetwork, survey: Survey) -> list[House]:
             corners = np.round([*feet, *(feet + deep * outwards)[::-1]], 3)
             shape = shapely.Polygon(corners)
             free = not len(tree.query(shape, predicate="intersects"))
-            if shape.is_valid and free and not _near(shape, made):
+            here = [(int(x // _CELL), int(y // _CELL)) for x, y in corners.tolist()]
+            near = [one for cell in here for one in beside[cell]]
+            apart = not shapely.dwithin(near, shape, _GAP[0] - 0.5).any() if near else True
+            if shape.is_valid and free and apart:
                 made.append(House(shape, "house" if front < 16.0 else "apartments"))
+                for x, y in {(x + i, y + j) for x, y in here for i in _ROUND for j in _ROUND}:
+                    beside[x, y].append(shape)
             along += front + float(rng.uniform(*_GAP))
     return made
-
-
-def _near(shape: shapely.Polygon, houses: Sequence[House]) -> bool:
-    """Return whether a house stands nearer to others than houses do."""
-    others = [house.shape for house in houses]
-    return bool(len(others)) and bool(shapely.dwithin(others, shape, _GAP[0] - 0.5).any())
