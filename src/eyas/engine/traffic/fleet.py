@@ -2,6 +2,7 @@
 
 import heapq
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from itertools import repeat
 from typing import NamedTuple
 
@@ -34,7 +35,7 @@ class Departure(NamedTuple):
     speed: str = "0"  # How fast it is then [m/s], or SUMO's word for it
 
 
-_ROOM = 30.0  # Length of street in one direction for each vehicle, at least [m]
+ROOMS = (30.0, 60.0, 120.0)  # Tried one after the other, until traffic flows [m]
 _USUAL = 8.0  # Mean speed on a way through a town, about [m/s]
 
 Fleet = Callable[[Links], Iterator[Departure]]
@@ -74,7 +75,9 @@ def fleet_of(
     config: TrafficConfig,  # Settings from `eyas.engine.traffic.record.resolved`
     duration: float,  # Time until which they enter and drive [s]
     *,
-    town: bool = False,  # Whether no recipe has drawn the roads: not all of them lead back
+    # Length of street in one direction for each vehicle, at least, of roads that no recipe has
+    # drawn, of which not all lead back [m]; None: a recipe has drawn them
+    room: float | None = None,
 ) -> Fleet:
     """Return the vehicles that settings ask for."""
     assert config.seed is not None
@@ -87,12 +90,12 @@ def fleet_of(
             walk = endless_walk(links[name], edges[name], duration * config.max_speed, rng)
             yield Departure(0.0, walk, name, "random_free")
 
-    def coming_and_going(links: Links) -> Iterator[Departure]:
+    def coming_and_going(links: Links, room: float) -> Iterator[Departure]:
         leaving: list[tuple[float, int, VehicleType]] = []
         for name in dict.fromkeys(actors):
             roads, loops = links[name], roomy_loops(links[name])
             whole = sum(roads.length.values())
-            count = min(actors.count(name), int(whole / (_ROOM * len(set(actors)))) + 1)
+            count = min(actors.count(name), int(whole / (room * len(set(actors)))) + 1)
             share = np.array([roads.length[edge] for edge in loops])
             stay = round(count * share.sum() / max(whole, 1.0))
             stay = min(stay, count - (len(loops) < len(roads.length)))
@@ -123,7 +126,9 @@ def fleet_of(
 
     if config.demand is Demand.RESPAWN:
         return respawn
-    return coming_and_going if town and config.drivers is Drivers.NORMAL else keep_alive
+    if room is None or config.drivers is not Drivers.NORMAL:
+        return keep_alive
+    return partial(coming_and_going, room=room)
 
 
 def _shuffled(actors: tuple[VehicleType, ...], rng: np.random.Generator) -> Iterator[VehicleType]:

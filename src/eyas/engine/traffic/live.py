@@ -21,7 +21,7 @@ from eyas.engine.state.roads import RoadGraph
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.traffic.config import Demand, TrafficConfig, VehicleType
 from eyas.engine.traffic.cover import Cover
-from eyas.engine.traffic.fleet import fleet_of
+from eyas.engine.traffic.fleet import ROOMS, fleet_of
 from eyas.engine.traffic.interpolation import interpolate_actors
 from eyas.engine.traffic.record import WARM_UP, roads_for
 from eyas.engine.traffic.recorded import table_of
@@ -208,7 +208,9 @@ class LiveSumo:
     ) -> None:
         _check_alone()
         town = bool(graph.finished)
-        fleet = fleet_of(config, WARM_UP + duration, town=town)
+        # There is no second try.
+        room = ROOMS[1] if town else None
+        fleet = fleet_of(config, WARM_UP + duration, room=room)
         self._run = SumoRun(roads_for(config, graph), config, fleet, cover, town=town)
         self._end = weakref.finalize(self, self._run.close)
         self._lasting = config.demand is Demand.KEEP_ALIVE

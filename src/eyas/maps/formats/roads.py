@@ -9,7 +9,7 @@ from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import refusals, write_atomic
 from eyas.engine.core.scratch import scratch
 from eyas.engine.traffic.config import Signals, TrafficConfig
-from eyas.engine.traffic.fleet import fleet_of
+from eyas.engine.traffic.fleet import ROOMS, fleet_of
 from eyas.engine.traffic.library import CANONICAL_SEED, STANDARD_DURATION
 from eyas.engine.traffic.network import network_xml
 from eyas.engine.traffic.record import resolved
@@ -22,7 +22,8 @@ def _files_of_network(
     name: str, network: bytes, config: TrafficConfig, duration: float, *, town: bool
 ) -> Mapping[str, bytes]:
     """Return what `sumo -c NAME.sumocfg` needs for the traffic of a map, by names of files."""
-    types, departures = departures_and_types(network, config, fleet_of(config, duration, town=town))
+    room = ROOMS[1] if town else None
+    types, departures = departures_and_types(network, config, fleet_of(config, duration, room=room))
     lines = ["<routes>", types]
     for number, each in enumerate(departures):
         edges = " ".join(each.route)

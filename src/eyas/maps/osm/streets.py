@@ -267,6 +267,8 @@ OPTIONS = {
     "--tls.guess-signals": "true",
     "--tls.discard-simple": "true",
     "--tls.join": "true",
+    # SUMO's 20 m join all lights of an interchange into one program, with a red of five minutes.
+    "--tls.join-dist": "8",
     # As for the maps of recipes, see `eyas.engine.traffic.network`.
     "--junctions.corner-detail": "8",
     "--junctions.internal-link-detail": "20",
