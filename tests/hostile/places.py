@@ -141,6 +141,9 @@ READERS = {
     "maps.osm.reader:read_pbf": "pbf",
     "maps.osm.reader:_read_xml": "osm",
     "maps.plan.file:content_of": "plan",
+    "maps.sumo.files:_root": "sumo routes",
+    "maps.sumo.files:moved": "sumo net",
+    "maps.sumo.files:place_of": "sumo net",
     "engine.world.roads.network_file:load_network": "network",
 }
 """Rows of `test_readers`, by places."""
@@ -151,6 +154,7 @@ _OUTPUT = "what this run, or an earlier one into the same folder, has written"
 _CODE = "a file that is code, and is read only if its user says so"
 _SOCKET = "a socket, tested in the servers' part"
 OWN = {
+    "maps.osm.driving_side:usual_side": _PACKAGE,
     "dat.shim:_listen_early": "settings, of which one number is looked for; they are read later",
     "engine.core.identity.build:_digest_of": _PACKAGE,
     "engine.core.cache.array_file:map_arrays": _CACHE,

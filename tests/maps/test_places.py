@@ -411,7 +411,7 @@ def test_a_network_is_moved_and_nothing_else_is_changed():
     assert place.middle == (150.0, 7.0)
     assert place.size == (100.0, 0.0)
     assert place.degrees == pytest.approx((6.91, 50.91))
-    text = moved(xml.encode(), (-150.0, -7.0)).decode()
+    text = moved(xml.encode(), (-150.0, -7.0), "x").decode()
     for part in ('shape="-50.000,0.000 50.000,0.000,3.5"', 'x="-50.000" y="0.000"',
                  'netOffset="-145.000,-1.000"', 'length="9"'):  # fmt: skip
         assert part in text

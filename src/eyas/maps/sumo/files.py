@@ -96,22 +96,33 @@ def _corners(location: ElementTree.Element) -> tuple[float, float] | None:
     return (0.5 * (west + east), 0.5 * (south + north)) if -85 < south < north < 85 else None
 
 
-def moved(xml: bytes, by: tuple[float, float]) -> bytes:
-    """Return a network, from `place_of`, moved east and north [m]; nothing else is changed."""
+def moved(xml: bytes, by: tuple[float, float], source: str) -> bytes:
+    """Return a network, from `place_of`, moved east and north [m]; nothing else is changed.
+
+    Raises:
+        DataFileError: One of its places is no number.
+    """
     root = ElementTree.fromstring(xml)
-    for one in root.iter():
-        for name in _SHAPES:
-            if name in one.attrib:
-                one.set(name, " ".join(_moved(pair, by) for pair in one.attrib[name].split()))
-        if one.tag == "junction" and "x" in one.attrib:
-            for name, step in zip("xy", by, strict=True):
-                one.set(name, f"{float(one.attrib[name]) + step:.3f}")
-        if one.tag == "location":
-            for name in ("netOffset", "convBoundary"):
-                pairs = one.get(name, "").split(",")
-                ends = [",".join(pairs[k : k + 2]) for k in range(0, len(pairs) - 1, 2)]
-                one.set(name, ",".join(_moved(pair, by) for pair in ends))
+    try:
+        for one in root.iter():
+            _move(one, by)
+    except (ValueError, IndexError) as error:
+        raise DataFileError(f"{source}: not a network of SUMO: a place: {error}") from None
     return bytes(ElementTree.tostring(root, encoding="utf-8")) + b"\n"
+
+
+def _move(one: ElementTree.Element, by: tuple[float, float]) -> None:
+    for name in _SHAPES:
+        if name in one.attrib:
+            one.set(name, " ".join(_moved(pair, by) for pair in one.attrib[name].split()))
+    if one.tag == "junction" and "x" in one.attrib:
+        for name, step in zip("xy", by, strict=True):
+            one.set(name, f"{float(one.attrib.get(name, '')) + step:.3f}")
+    if one.tag == "location":
+        for name in ("netOffset", "convBoundary"):
+            pairs = one.get(name, "").split(",")
+            ends = [",".join(pairs[k : k + 2]) for k in range(0, len(pairs) - 1, 2)]
+            one.set(name, ",".join(_moved(pair, by) for pair in ends))
 
 
 def _moved(pair: str, by: tuple[float, float]) -> str:

@@ -97,7 +97,9 @@ def run(
             f"most {_LARGEST / 1000:g} km are imported: cut a part out of it with netconvert "
             "--keep-edges.in-boundary"
         )
-    graph = RoadGraph(name, 0, (), (), moved(xml, (-place.middle[0], -place.middle[1])))
+    graph = RoadGraph(
+        name, 0, (), (), moved(xml, (-place.middle[0], -place.middle[1]), str(net_path))
+    )
     net = SumoNet(graph.finished, str(net_path))
     network = road_network(net, graph_hash(graph))
     made = Streets(graph, net, network)
