@@ -14,6 +14,8 @@ from eyas.engine.traffic.net_file import SumoNet
 
 _LARGEST = 512 << 20  # Largest file, packed and unpacked [bytes]
 
+_FARTHEST = 1e8  # Largest coordinate, of whatever projection [m]
+
 _SHAPES = ("shape", "customShape", "outlineShape")
 
 _KEPT = ("vType", "vTypeDistribution", "route", "routeDistribution", "vehicle", "trip", "flow")
@@ -82,6 +84,8 @@ def place_of(xml: bytes, source: str) -> Place:
         corners = None
     if not len(points):
         raise DataFileError(f"{source}: has no streets")
+    if not (np.abs(points) <= _FARTHEST).all():  # also what is no number: it is not
+        raise net.error(f"a place beyond {_FARTHEST / 1000:g} km")
     low, high = points.min(axis=0), points.max(axis=0)
     x, y = np.round(0.5 * (low + high), 2).tolist()
     width, height = (high - low).tolist()
