@@ -28,7 +28,7 @@ from eyas.maps.commands.info import describe
 from eyas.maps.files import MAP_FILES
 from eyas.maps.formats.roads import write_sumo
 from eyas.maps.osm import importing
-from eyas.maps.osm.driving_side import told_side, usual_side
+from eyas.maps.osm.driving_side import tagged_side, usual_side
 from eyas.maps.osm.reader import covered, read_osm
 from eyas.maps.osm.streets import street_file
 from eyas.maps.sumo import importing as sumo_importing
@@ -203,7 +203,7 @@ def test_a_file_may_say_on_which_side_one_drives(tmp_path):
     for tags, side in (({}, ""), ({"driving_side": "left"}, "left"), ({"drive_on": "right"},
                        "right"), ({"driving_side": "opposite"}, "")):  # fmt: skip
         data = read_osm(file(tmp_path, street + way(3, 1, 2, highway="road", **tags)))
-        assert told_side(data) == side
+        assert tagged_side(data) == side
 
 
 def test_vehicles_are_mirrored_and_still_signal_to_their_own_side():

@@ -97,7 +97,7 @@ def _of_file(path: Path) -> Finding:
 
 
 def _map(path: Path) -> Brought:
-    from eyas.maps.osm.driving_side import told_side, usual_side
+    from eyas.maps.osm.driving_side import tagged_side, usual_side
     from eyas.maps.osm.reader import no_streets, read_osm
 
     data = read_osm(path)
@@ -111,7 +111,7 @@ def _map(path: Path) -> Brought:
     )
     if not streets:
         raise no_streets(data, str(path))
-    side = told_side(data) or usual_side(0.5 * (west + east), 0.5 * (south + north))
+    side = tagged_side(data) or usual_side(0.5 * (west + east), 0.5 * (south + north))
     command = f"eyas maps import {_quoted(path)}"
     return Brought(
         path, what, (f"traffic keeps {side}",), (command, f"eyas video --map {_map_name(path)}")

@@ -1,4 +1,4 @@
-"""On which side of the road one drives: told by the user, by the file, or by the place."""
+"""On which side of the road one drives, by the tags of a file, or else by the place."""
 
 from collections import Counter
 from pathlib import Path
@@ -12,7 +12,7 @@ SIDES = ("left", "right")
 _KEYS = ("driving_side", "drive_on")
 
 
-def told_side(data: OsmData) -> str:
+def tagged_side(data: OsmData) -> str:
     """Return the side that most streets, or else the boundaries, of a file name; empty: none."""
     streets = [way.tags for way in data.ways.values() if "highway" in way.tags]
     for some in (streets, [relation.tags for relation in data.relations]):

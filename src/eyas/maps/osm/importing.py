@@ -50,7 +50,7 @@ from eyas.engine.world.roads.areas import polygons_of
 from eyas.engine.world.roads.network_file import save_network
 from eyas.lanes import exact
 from eyas.maps.files import MAP_FILE, ROADS_FILE, Origin, maps_folder
-from eyas.maps.osm.driving_side import told_side, usual_side
+from eyas.maps.osm.driving_side import tagged_side, usual_side
 from eyas.maps.osm.features import Survey
 from eyas.maps.osm.houses import buildings_beyond, houses_of
 from eyas.maps.osm.land import add_land
@@ -253,9 +253,12 @@ def _middle_of(data: OsmData, limits: Bounds) -> str:
 
 def _side(data: OsmData, place: _Place, asked: str | None, report: Report) -> str:
     """Return the side of the road on which one drives."""
-    told, usual = told_side(data), usual_side(place.projection.longitude, place.projection.latitude)
-    side = asked or told or usual
-    why = "--drive-on" if asked else "the file's driving_side" if told else "the place"
+    tagged, usual = (
+        tagged_side(data),
+        usual_side(place.projection.longitude, place.projection.latitude),
+    )
+    side = asked or tagged or usual
+    why = "--drive-on" if asked else "the file's driving_side" if tagged else "the place"
     report.side = f"traffic keeps {side} ({why}); --drive-on changes it"
     return side
 

@@ -40,13 +40,13 @@ def configured(path: Path) -> SumoFiles:
         DataFileError: It is damaged, or names no network.
     """
     root = _root(path)
-    said = {one.tag: one.get("value", one.get("v", "")) for one in root.iter()}
-    net = said.get("net-file", said.get("net", ""))
+    values = {one.tag: one.get("value", one.get("v", "")) for one in root.iter()}
+    net = values.get("net-file", values.get("net", ""))
     if root.tag not in ("configuration", "sumoConfiguration") or not net:
         raise DataFileError(f"{path}: not a configuration of SUMO with a net-file")
-    named = f"{said.get('additional-files', '')},{said.get('route-files', '')}"
+    named = f"{values.get('additional-files', '')},{values.get('route-files', '')}"
     routes = tuple(path.parent / one.strip() for one in named.split(",") if one.strip())
-    return SumoFiles(path.parent / net, routes, seconds(said.get("begin", "0"), path))
+    return SumoFiles(path.parent / net, routes, seconds(values.get("begin", "0"), path))
 
 
 def seconds(text: str, path: Path) -> float:
@@ -152,7 +152,7 @@ def demand_of(files: SumoFiles, left_out: Callable[[str], None]) -> bytes:
     if not enters:
         raise DataFileError(f"{path}: has no vehicles")
     starts = [_time(one, ("depart", "begin"), path) for one in enters]
-    # A simulation that is told to begin earlier waits for the first vehicle.
+    # A simulation that begins earlier waits for the first vehicle.
     begin = max(files.begin, min(starts))
     for one in whole.iter():
         for name in _BEGINS:

@@ -83,9 +83,9 @@ def run(
     name = name_of(name if name is not None else path.name.split(".")[0])
     folder = (out if out is not None else maps_folder() / name).absolute()
     check_free(folder, name, overwrite=overwrite, own=out is None)
-    said = path if path.name.endswith(".sumocfg") else config
-    files = configured(said) if said is not None else SumoFiles(path)
-    net_path = files.net if path == said else path
+    named = path if path.name.endswith(".sumocfg") else config
+    files = configured(named) if named is not None else SumoFiles(path)
+    net_path = files.net if path == named else path
     files = files._replace(net=net_path, routes=tuple(routes) or files.routes)
     report = Report(name, folder, registered=out is None, notices=())
     demand = demand_of(files, lambda what: report.left_out.update([what])) if files.routes else b""
@@ -123,11 +123,11 @@ def run(
         register_map(name)
     if demand:
         with sumo_progress() as progress:
-            told = record_others(
+            recording = record_others(
                 graph, demand, lambda what: report.left_out.update([what]), progress
             )
-        save(told, folder / TRAFFIC_FILE)
-        report.traffic = coverage(told, network)
+        save(recording, folder / TRAFFIC_FILE)
+        report.traffic = coverage(recording, network)
     else:
         report.traffic = recorded(made, folder, record=record)
     report.seconds = time.monotonic() - begun

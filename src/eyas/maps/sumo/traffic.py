@@ -125,11 +125,11 @@ def _actor(
     left_out: Callable[[str], None],
 ) -> int:
     """Return the actor for a vehicle that has come into the world; -1: it is left out."""
-    said = sumo.vehicle.getVehicleClass(name)
-    if said not in _CLASSES:
-        left_out(f"vehicles of the class {said}")
+    own = sumo.vehicle.getVehicleClass(name)
+    if own not in _CLASSES:
+        left_out(f"vehicles of the class {own}")
         return -1
-    kind = _CLASSES[said]
+    kind = _CLASSES[own]
     if free[kind]:
         return free[kind].pop(0)
     if len(classes) >= _MOST:

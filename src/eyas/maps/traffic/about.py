@@ -146,7 +146,7 @@ def _line(figures: ClassFigures) -> str:
 
 def coverage(recording: TrafficRecording, network: RoadNetwork) -> str:
     """Return a sentence about the vehicles of a recording, and on which streets they drive."""
-    every = max(round(0.5 * recording.rate), 1)  # half a second on a lane is seen
+    every = max(round(0.5 * recording.rate), 1)  # who is on a lane for less is missed
     here = recording.present[::every]
     places = recording.position[::every][here]
     lanes = LaneMap(network).at(places[:, 0], places[:, 1])
