@@ -145,6 +145,9 @@ READERS = {
     "maps.osm.reader:read_pbf": "pbf",
     "maps.osm.reader:_read_xml": "osm",
     "maps.plan.file:content_of": "plan",
+    "maps.sumo.files:_root": "sumo routes",
+    "maps.sumo.files:moved": "sumo net",
+    "maps.sumo.files:place_of": "sumo net",
     "engine.world.roads.network_file:load_network": "network",
 }
 """Rows of `test_readers`, by places."""
@@ -156,6 +159,7 @@ _CODE = "a file that is code, and is read only if its user says so"
 _SOCKET = "a socket, tested in the servers' part"
 OWN = {
     "lanes.text_index:TextIndex.json_of": _PACKAGE,
+    "maps.osm.driving_side:usual_side": _PACKAGE,
     "dat.shim:_listen_early": "settings, of which one number is looked for; they are read later",
     "engine.core.identity.build:_digest_of": _PACKAGE,
     "engine.core.cache.array_file:map_arrays": _CACHE,

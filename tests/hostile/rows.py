@@ -223,6 +223,41 @@ def _roads(folder, chance, most):
     return of_bytes(path, read, chance, most, *bombs)
 
 
+@row("sumo net")
+def _sumo_net(folder, chance, most):
+    from eyas.maps import files
+    from eyas.maps.sumo.files import moved, place_of
+
+    path, head = folder / "x.net.xml", '<net version="1.20">'
+    place = (
+        f'{head}<location netOffset="1,2" convBoundary="-50,0,50,0" origBoundary="6.9,50.9,7,51"'
+        ' projParameter="+proj=utm"/>'
+    )
+    path.write_text(NET.replace(head, place))
+
+    def read() -> None:
+        xml = files.roads_in(path)
+        place_of(moved(xml, place_of(xml, "x").middle, "x"), "x")
+
+    return of_bytes(path, read, chance, most, *with_words(NET, ABSURD_WORDS))
+
+
+ROUTES = """<routes><vType id="v" vClass="bus"/><flow id="f" begin="0:10" end="7200" number="9"/>
+<vehicle id="a" depart="3600"><route edges="a"/></vehicle><person id="p" depart="1"/></routes>"""
+
+
+@row("sumo routes")
+def _sumo_routes(folder, chance, most):
+    from eyas.maps.sumo import files
+
+    limited(files)
+    path = folder / "x.rou.xml"
+    path.write_text(ROUTES)
+    asked = files.SumoFiles(path, (path,))
+    bombs = gzip_bomb, *with_words(ROUTES, ABSURD_WORDS)
+    return of_bytes(path, lambda: files.demand_of(asked, str), chance, most, *bombs)
+
+
 @row("network")
 def _network(folder, chance, most):
     from dataclasses import replace

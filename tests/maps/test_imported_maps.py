@@ -386,7 +386,7 @@ def test_absurd_numbers_of_an_imported_network_are_one_line(town, tmp_path, fiel
         ('<bounds minlat="52" minlon="13" maxlat="52.001" maxlon="13.001"/>'
          '<node id="1" lat="52.0005" lon="13.0005"/>', "makes no road network|no street"),
         ('<bounds minlat="52" minlon="13" maxlat="52.2" maxlon="13.2"/>'
-         '<node id="1" lat="52.0005" lon="13.0005"/>', "at most 6 km"),
+         '<node id="1" lat="52.0005" lon="13.0005"/>', "at most 8 km"),
         ('<bounds minlat="52" minlon="13" maxlat="52.0001" maxlon="13.0001"/>'
          '<node id="1" lat="52.00005" lon="13.00005"/>', "too little for a map"),
     ],

@@ -333,7 +333,7 @@ def test_streets_keep_what_netconvert_needs_and_lose_what_it_stumbles_over(tmp_p
         tmp_path, node(1, 0, 0), node(2, 90, 0, highway="traffic_signals", ref="x"),
         node(3, 9e5, 0), node(4, 100, 50), way(11, 1, 2, 3, highway="primary",
         lanes="two", maxspeed="fast", oneway="yes", name="A &amp; B"),
-        way(12, 2, 4, highway="footway"), way(13, 3, 4, highway="service"),
+        way(12, 2, 4, highway="footway"), way(13, 1, 4, highway="service", service="driveway"),
     )  # fmt: skip
     text = read.streets()
     assert read.odd == {"lanes": 1, "maxspeed": 1}

@@ -97,7 +97,8 @@ def _of_file(path: Path) -> Finding:
 
 
 def _map(path: Path) -> Brought:
-    from eyas.maps.osm.reader import read_osm
+    from eyas.maps.osm.driving_side import tagged_side, usual_side
+    from eyas.maps.osm.reader import no_streets, read_osm
 
     data = read_osm(path)
     places = np.array(list(data.places.values()))
@@ -109,9 +110,12 @@ def _map(path: Path) -> Brought:
         f"about latitude {0.5 * (south + north):.4f}, longitude {0.5 * (west + east):.4f}"
     )
     if not streets:
-        raise DataFileError(f"{path}: has no streets (a map of Lanelet2 is not read)")
+        raise no_streets(data, str(path))
+    side = tagged_side(data) or usual_side(0.5 * (west + east), 0.5 * (south + north))
     command = f"eyas maps import {_quoted(path)}"
-    return Brought(path, what, (), (command, f"eyas video --map {_map_name(path)}"))
+    return Brought(
+        path, what, (f"traffic keeps {side}",), (command, f"eyas video --map {_map_name(path)}")
+    )
 
 
 def _map_name(path: Path) -> str:
@@ -119,7 +123,17 @@ def _map_name(path: Path) -> str:
 
 
 def _net(path: Path) -> Brought:
-    return Brought(path, "a road network of SUMO", (), (f"eyas maps import {_quoted(path)}",))
+    from eyas.maps.files import roads_in
+    from eyas.maps.sumo.files import configured, place_of
+
+    net = configured(path).net if path.name.endswith(".sumocfg") else path
+    width, height = place_of(roads_in(net), str(net)).size
+    what = f"a road network of SUMO, {width:.0f} x {height:.0f} m"
+    routes = "its vehicles: --routes FILE.rou.xml, or import its .sumocfg"
+    notes = () if net != path else (routes,)
+    command = f"eyas maps import {_quoted(path)}"
+    name = path.name.split(".")[0]
+    return Brought(path, what, notes, (command, f"eyas video --map {name}"))
 
 
 def _track(path: Path) -> Brought:

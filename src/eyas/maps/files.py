@@ -46,8 +46,8 @@ class Origin:
     name: str
     title: str
     source: str  # Name of the file that it was made of
-    longitude: float  # Longitude of the middle of the map [degrees]
-    latitude: float  # Latitude of the middle of the map [degrees]
+    longitude: float | None  # Longitude of the middle of the map [degrees]; None: it lies nowhere
+    latitude: float | None  # Latitude of the middle of the map [degrees]
     size: tuple[float, float]  # Extent of the floor [m]
     format: str = FORMAT
     checksums: dict[str, str] = field(default_factory=dict)
@@ -78,7 +78,8 @@ def origin_of(folder: Path) -> Origin:
         width, height = origin.size
         if not all(isinstance(text, str) for text in (origin.name, origin.title, origin.source)):
             raise TypeError("name, title and source must be texts")
-        if not all(map(math.isfinite, (origin.longitude, origin.latitude))):
+        placed = (origin.longitude, origin.latitude)
+        if placed != (None, None) and not all(map(math.isfinite, placed)):  # type: ignore[arg-type]
             raise TypeError("longitude and latitude must be numbers")
         if not all(isinstance(text, str) for pair in origin.checksums.items() for text in pair):
             raise TypeError("checksums must be texts")
@@ -135,7 +136,9 @@ def _recipe(folder: Path) -> MapRecipe:
             title=origin.title,
             roads=partial(_roads, folder / ROADS_FILE, origin.name, sums=origin.checksums),
             plan=partial(_plan, folder / PLAN_FILE, sums=origin.checksums),
-            origin=(origin.longitude, origin.latitude),
+            origin=None
+            if origin.longitude is None or origin.latitude is None
+            else (origin.longitude, origin.latitude),
             home=folder,
             checksums=origin.checksums,
         )

@@ -10,6 +10,7 @@ import pytest
 from eyas.engine.core.errors import EyasError
 from eyas.engine.custom.config import CustomConfig
 from eyas.engine.custom.mesh_file import loaded
+from eyas.engine.custom.tracks import tracks_in
 from eyas.engine.custom.trajectory import read_trajectory
 
 CSV = b't,x,y,z,yaw\n0,0,0,1,"0"\n1,1e0,2,1,.1\n2.5,3,4,1,0.2\n'
@@ -114,3 +115,19 @@ def test_a_triangle_with_a_corner_that_is_not_there_is_one_line(tmp_path):
     path.write_bytes(OBJ + b"f 1 2 99\n")
     with pytest.raises(EyasError, match="cannot read as a mesh"):
         read(path)
+
+
+def test_a_table_of_recorded_road_users_holds_many_bodies(tmp_path):
+    path = tmp_path / "tracks.csv"  # the columns of inD
+    rows = [f"0,{who},{frame},{10 * who + frame},{who}" for who in (7, 3) for frame in range(5)]
+    path.write_text("\n".join(["recordingId,trackId,frame,xCenter,yCenter", *rows, "0,9,1,0,0"]))
+    seven, three = tracks_in(path)
+    assert (seven.name, three.name) == ("7", "3")
+    assert seven.time.tolist() == pytest.approx([0.0, 0.04, 0.08, 0.12, 0.16])
+    assert three.place[:, :2].tolist() == [[30.0 + k, 3.0] for k in range(5)]
+    with pytest.raises(EyasError, match="2 bodies; allowed here: one"):
+        read_trajectory(path)
+    many = [f"0,{who},{frame},0,0" for who in range(201) for frame in range(2)]
+    path.write_text("\n".join(["recordingId,trackId,frame,xCenter,yCenter", *many]))
+    with pytest.raises(EyasError, match="201 bodies; allowed: up to 200"):
+        tracks_in(path)

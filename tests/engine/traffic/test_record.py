@@ -81,7 +81,7 @@ def test_a_recording_is_what_sumo_itself_writes_down(
 ):
     log = tmp_path / "fcd.xml"
     told = sumo_room.options(TrafficConfig())
-    monkeypatch.setattr(sumo_room, "options", lambda _: (*told, "--fcd-output", str(log)))
+    monkeypatch.setattr(sumo_room, "options", lambda _, **how: (*told, "--fcd-output", str(log)))
     recording = record("grid", 0, grid, CARS, 20.0, 1)
     compared = 0
     for step in ElementTree.parse(log).iter("timestep"):

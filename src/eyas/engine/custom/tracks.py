@@ -54,7 +54,7 @@ def tracks_in(path: Path) -> list[Track]:
     """
     ending = path.suffix.lower()
     if ending in ("", ".csv"):
-        return [read_table(path)]
+        return read_table(path)
     read = brought_object(GROUP, ending)
     if read is None:
         raise DataFileError(

@@ -26,6 +26,7 @@ _LIMITS = {
 }
 """Largest numbers of the columns; times may count from 1970 in any unit."""
 
+_MOST = 200  # Largest number of bodies in a table: each is sampled for the whole time
 _LONGEST = 86_400.0  # Longest trajectory: it is sampled as a whole [s]
 _STANDING = 0.2  # Speed below which a heading that is not told is that before [m/s]
 _SWING = 0.05
@@ -99,11 +100,13 @@ class Track(NamedTuple):
     name: str = ""  # Of several in one file
 
 
-def read_table(path: Path) -> Track:
-    """Return the track of a CSV file, whose columns may have the names that others give them.
+def read_table(path: Path) -> list[Track]:
+    """Return the tracks of a CSV file, whose columns may have the names that others give them: one
+    for each value of a column `id`, in the order of the file, or one.
 
     Raises:
-        DataFileError: The file is missing, or has not the columns, or something else than numbers.
+        DataFileError: The file is missing, or has not the columns, or something else than numbers,
+            or too many bodies.
     """
     text = read_limited(path, _LARGEST).decode("utf-8-sig", errors="replace")
     delimiter = _delimiter(text)
@@ -127,10 +130,10 @@ def read_table(path: Path) -> Track:
         if names.count(name) > 1:
             raise DataFileError(f"{path}: line 1: two columns are '{name}'")
     wanted = [(k, name) for k, name in enumerate(names) if name in _LIMITS]
+    filled = [(k, line) for k, line in enumerate(lines[1:], 2) if any(map(str.strip, line))]
     rows = [
         _numbers(path, k, line, len(names), wanted, decimal_comma=delimiter == ";")
-        for k, line in enumerate(lines[1:], 2)
-        if any(cell.strip() for cell in line)
+        for k, line in filled
     ]
     values = np.array(rows, np.float64).reshape(-1, len(wanted))
     column = {name: values[:, k] for k, (_, name) in enumerate(wanted)}
@@ -143,8 +146,25 @@ def read_table(path: Path) -> Track:
         places = (column["x"], column["y"], column.get("z", level))
     yaw = None
     if "yaw" in column and not on_earth:
-        yaw = np.unwrap(column["yaw"])
-    return Track(time, np.column_stack(places), on_earth, yaw)
+        yaw = column["yaw"]
+    whole = Track(time, np.column_stack(places), on_earth, yaw)
+    if "id" not in names:
+        return [_of_body(whole, slice(None), "")]
+    who = np.array([line[names.index("id")].strip() for _, line in filled], np.str_)
+    bodies = [(name, np.flatnonzero(who == name)) for name in dict.fromkeys(who.tolist())]
+    # A body of one point is seen for one picture only, as at the edge of a recording.
+    bodies = [(name, own) for name, own in bodies if len(own) > 1]
+    if len(bodies) > _MOST:
+        raise DataFileError(
+            f"{path}: {len(bodies)} bodies; allowed: up to {_MOST}: leave out the rows of others"
+        )
+    return [_of_body(whole, own, name) for name, own in bodies]
+
+
+def _of_body(whole: Track, own: slice | NDArray[np.int64], name: str) -> Track:
+    assert whole.time is not None
+    yaw = None if whole.yaw is None else np.unwrap(whole.yaw[own])
+    return Track(whole.time[own], whole.place[own], whole.on_earth, yaw, name)
 
 
 def read_trajectory(path: Path) -> Trajectory:
@@ -154,7 +174,9 @@ def read_trajectory(path: Path) -> Trajectory:
         DataFileError: The file is missing, or does not hold a trajectory: time runs backwards, a
             number is missing, not finite or absurd, or it lasts longer than a day.
     """
-    track = read_table(path)
+    track, *others = read_table(path)
+    if others:
+        raise DataFileError(f"{path}: {1 + len(others)} bodies; allowed here: one")
     assert track.time is not None  # a table has times
     return trajectory_of(path, track.time, track.place, track.yaw)
 
@@ -184,8 +206,9 @@ def trajectory_of(path: Path, time: Floats, position: Floats, yaw: Floats | None
 
 _SYNONYMS = {
     "t": "t time timestamp stamp sec secs second seconds datetime date_time utc time_utc elapsed",
-    "x": "x east e pos_x position_x px tx x_position",
-    "y": "y north n pos_y position_y py ty y_position",
+    "x": "x east e pos_x position_x px tx x_position xcenter x_center",
+    "y": "y north n pos_y position_y py ty y_position ycenter y_center",
+    "id": "id trackid track_id vehicle_id object_id agent_id",
     "z": "z up alt altitude height ele elevation pos_z position_z pz tz",
     "yaw": "yaw",
     "latitude": "latitude lat",
@@ -194,12 +217,15 @@ _SYNONYMS = {
 """Names of columns, in small letters, without units."""
 
 _NAMED = {each: name for name, several in _SYNONYMS.items() for each in several.split()}
+_FRAME = 0.04  # Time of a frame where a table counts these, as highD and inD do, 25 a second [s]
 _UNITS = {"ns": 1e-9, "us": 1e-6, "µs": 1e-6, "ms": 1e-3, "s": 1.0}
 
 
 def _column(name: str) -> tuple[str, float]:
     """Return our name of a column, and the factor of a time to seconds."""
     plain = name.strip().strip("\"'").lower()
+    if plain == "frame":
+        return "t", _FRAME
     unit = re.search(r"[\[(]\s*([a-zµ]+)\s*[\])]$|_([a-zµ]+)$", plain)
     stem = re.sub(r"\s*[\[(].*[\])]$", "", plain).strip().replace(" ", "_")
     factor = _UNITS.get((unit[1] or unit[2]) if unit else "", 0.0)

@@ -134,7 +134,9 @@ def _packed(
     *,
     lenses: Lenses,
 ) -> Geometry:
-    return build_geometry(scene, _with_lights(load_parts(kinds), lenses), textures())
+    left_hand = scene.network.left_hand
+    parts, facing = part_library(_chosen(kinds), left_hand=left_hand), -1.0 if left_hand else 1.0
+    return build_geometry(scene, _with_lights(parts, lenses, facing), textures())
 
 
 def _chosen(kinds: tuple[int, ...]) -> tuple[TargetKind, ...]:
@@ -146,11 +148,11 @@ def load_parts(kinds: tuple[int, ...]) -> PartLibrary:
     return part_library(_chosen(kinds))
 
 
-def _with_lights(parts: PartLibrary, wanted: Lenses) -> PartLibrary:
+def _with_lights(parts: PartLibrary, wanted: Lenses, facing: float) -> PartLibrary:
     """Return a library with the lights of signals after its other parts."""
     if wanted is Lenses.NONE:
         return parts
-    lenses = lens_levels(covers=wanted is Lenses.COVERING)
+    lenses = lens_levels(covers=wanted is Lenses.COVERING, facing=facing)
     lamps = parts.lamps or (False,) * len(parts.parts)
     return PartLibrary((*parts.parts, *lenses), (*lamps, *(False for _ in lenses)))
 

@@ -58,7 +58,8 @@ class RoadNetwork:
     graph_hash: str
     """Hash of the road graph it was built from."""
     builder: str
-    """Program and version that built it, for example `netconvert 1.28.0`."""
+    """Program and version that built it, for example `netconvert 1.28.0`; ends with `LEFT_HAND`
+    where traffic keeps left."""
     lane_points: NDArray[np.float64]
     """Centre lines of the lanes, concatenated [m], shape (P, 2)."""
     lane_first: NDArray[np.int32]
@@ -70,7 +71,7 @@ class RoadNetwork:
     lane_edge: NDArray[np.int32]
     """Index into `edges` of each lane, shape (L,)."""
     lane_index: NDArray[np.int32]
-    """0 is the rightmost lane of its edge, shape (L,)."""
+    """0 is the lane of its edge at the kerb, shape (L,)."""
     edges: tuple[str, ...]
     """Names of the edges, as in the graph."""
     edge_start: tuple[str, ...]
@@ -84,6 +85,14 @@ class RoadNetwork:
     junctions: tuple[str, ...]
     """Names of the junctions: the graph's nodes."""
 
+    @property
+    def left_hand(self) -> bool:
+        """Whether traffic keeps left."""
+        return self.builder.endswith(LEFT_HAND)
+
+
+LEFT_HAND = ", left-hand"
+"""End of `RoadNetwork.builder`: a field of its own would change the files of all networks."""
 
 _WIDEST, _FASTEST, _MOST_LANES = 100.0, 200.0, 100  # [m], [m/s]: larger ones are mistakes
 

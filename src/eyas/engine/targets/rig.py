@@ -1,12 +1,13 @@
 """Rigs: the poses of the parts of all actors, kind by kind."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.state.draw import DrawList, PartLibrary
-from eyas.engine.state.mesh import Mesh
+from eyas.engine.state.mesh import Mesh, Surface
 from eyas.engine.state.motion import ActorState
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.targets.catalogue import KINDS, models_of
@@ -89,12 +90,37 @@ class Rigs:
             rig.pose(group, actors, looks, out)
 
 
-def part_library(kinds: tuple[Kind, ...]) -> PartLibrary:
-    """Return the parts of some kinds, in the order that `Rigs` uses."""
+def part_library(kinds: tuple[Kind, ...], *, left_hand: bool = False) -> PartLibrary:
+    """Return the parts of some kinds, in the order that `Rigs` uses; vehicles are made for traffic
+    that keeps left, if they drive there: the driver sits on the right, doors of buses are left.
+    """
     parts: list[tuple[Mesh, ...]] = []
     lamps: list[bool] = []
     for kind in kinds:
         rig = kind.rig()
         lamps += [kind.lamps and part not in kind.trailers for part in range(rig.part_count)]
-        parts += rig.part_levels()
+        levels = rig.part_levels()
+        if left_hand and kind.lamps:
+            levels = [tuple(map(_mirrored, level)) for level in levels]
+        parts += levels
     return PartLibrary(tuple(parts), tuple(lamps))
+
+
+_OTHER = {
+    Surface.INDICATOR_LEFT: Surface.INDICATOR_RIGHT,
+    Surface.INDICATOR_RIGHT: Surface.INDICATOR_LEFT,
+}
+
+
+def _mirrored(mesh: Mesh) -> Mesh:
+    """Return a mesh mirrored left to right; its indicators blink on the side where they are."""
+    across = np.array([1.0, -1.0, 1.0], np.float32)
+    return replace(
+        mesh,
+        positions=mesh.positions * across,
+        normals=mesh.normals * across,
+        triangles=np.ascontiguousarray(mesh.triangles[:, ::-1]),
+        palette=tuple(
+            replace(one, surface=_OTHER.get(one.surface, one.surface)) for one in mesh.palette
+        ),
+    )

@@ -55,7 +55,9 @@ class Source(StrEnum):
 class Demand(StrEnum):
     """When vehicles enter and leave."""
 
-    KEEP_ALIVE = "keep_alive"  # All vehicles are present from the start and never leave
+    KEEP_ALIVE = "keep_alive"
+    """All vehicles are present from the start and never leave; of those on streets that no recipe
+    has drawn, which lead out, some do, and others enter."""
     RESPAWN = "respawn"
     """Groups of vehicles enter at intervals, drive a route and leave, and all start and brake in an
     instant, as in the original."""

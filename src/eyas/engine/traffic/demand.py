@@ -1,7 +1,7 @@
-"""Routes of vehicles: endless random walks, or groups that cross the map and leave."""
+"""Routes of vehicles: endless random walks, groups that cross the map and leave, ways through."""
 
 import heapq
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +20,7 @@ class RoadLinks:
 
     successors: dict[str, Route]  # Edges that can be entered from each edge
     length: dict[str, float]  # [m]
+    turning: frozenset[str] = frozenset()  # Edges at whose ends one can only turn back
 
 
 def without_turnarounds(
@@ -35,7 +36,8 @@ def without_turnarounds(
         for edge, following in links.successors.items()
     }
     successors = {edge: onward[edge] or links.successors[edge] for edge in onward}
-    return RoadLinks(successors, links.length)
+    turning = frozenset(edge for edge in onward if links.successors[edge] and not onward[edge])
+    return RoadLinks(successors, links.length, turning)
 
 
 def lasting_edges(links: RoadLinks) -> Route:
@@ -54,6 +56,94 @@ def lasting_edges(links: RoadLinks) -> Route:
             "map lead out of it; use 'respawn'"
         )
     return tuple(sorted(edge for part in parts if len(part) == largest for edge in part))
+
+
+_LOOP = 200.0  # Loops of streets below this are driven through, not round and round [m]
+_ROUND = 0.4  # Least share of the streets that loops without turning back must have to be used
+
+
+def roomy_loops(links: RoadLinks) -> Route:
+    """Return the edges of all loops in which vehicles may stay, of streets that no recipe has
+    drawn: those without a place where one turns back, if these are much of the streets.
+    """
+    onward = {
+        edge: () if edge in links.turning else after for edge, after in links.successors.items()
+    }
+    found: Route = ()
+    for successors in (onward, links.successors):
+        parts = _loops(RoadLinks(successors, links.length))
+        large = [part for part in parts if _length(links, part) >= _LOOP and len(part) > 1]
+        found = tuple(sorted(edge for part in large for edge in part))
+        if _length(links, found) >= _ROUND * _length(links, links.successors):
+            break
+    return found
+
+
+def ways_through(
+    links: RoadLinks,
+    known: Iterable[str],  # Edges on which there is traffic without them
+    rng: np.random.Generator,
+) -> Iterator[Route]:
+    """Yield routes from where streets begin, at the border or a dead end, to where they end.
+
+    Each leads over the edge on which the fewest have led so far, of these the longest.
+    """
+    back: dict[str, list[str]] = {edge: [] for edge in links.successors}
+    onward: dict[str, Sequence[str]] = {}
+    for edge, following in links.successors.items():
+        onward[edge] = () if edge in links.turning else following
+        for other in onward[edge]:
+            back[other].append(edge)
+    to_end = _towards([edge for edge in sorted(onward) if not onward[edge]], back, links.length)
+    from_start = _towards([edge for edge in sorted(back) if not back[edge]], onward, links.length)
+    driven = dict.fromkeys(sorted(links.successors), 0)
+    driven.update(dict.fromkeys(known, 1))
+    while True:
+        over = min(driven, key=lambda edge: (driven[edge], -links.length[edge]))
+        before = _way(over, back, from_start, links.length, rng)[::-1]
+        route = (*before[:-1], *_way(over, onward, to_end, links.length, rng))
+        for edge in route:
+            driven[edge] += 1
+        yield route
+
+
+_ASTRAY = 1500.0  # Longest way at random, before a route takes the shortest way out [m]
+
+
+def _way(
+    edge: str,
+    onward: Mapping[str, Sequence[str]],
+    shortest: Mapping[str, str],  # The next edge on the shortest way out; of the last, itself
+    length: Mapping[str, float],
+    rng: np.random.Generator,
+) -> list[str]:
+    """Return a way from an edge, at random and then to where it ends."""
+    way, left = [edge], float(rng.uniform(0.0, _ASTRAY))
+    while onward[way[-1]] and left > 0.0:
+        way.append(onward[way[-1]][int(rng.integers(len(onward[way[-1]])))])
+        left -= length[way[-1]]
+    while shortest.get(way[-1], way[-1]) != way[-1]:
+        way.append(shortest[way[-1]])
+    return way
+
+
+def _towards(
+    goals: list[str], back: Mapping[str, Sequence[str]], length: Mapping[str, float]
+) -> dict[str, str]:
+    """Return the next edge on the shortest way to a goal, for each from where one is reached."""
+    found = {goal: goal for goal in goals}
+    front = [(0.0, goal) for goal in goals]
+    while front:
+        so_far, edge = heapq.heappop(front)
+        for other in back[edge]:
+            if other not in found:
+                found[other] = edge
+                heapq.heappush(front, (so_far + length[other], other))
+    return found
+
+
+def _length(links: RoadLinks, edges: Iterable[str]) -> float:
+    return sum(links.length[edge] for edge in edges)
 
 
 def endless_walk(

@@ -31,11 +31,13 @@ class LaneMap:
     Attributes:
         edge: Edge of each lane, see `RoadNetwork.lane_edge`, shape (L,).
         index: See `RoadNetwork.lane_index`, shape (L,).
+        left_hand: See `RoadNetwork`.
     """
 
     def __init__(self, network: RoadNetwork) -> None:
         self.edge: Final = network.lane_edge
         self.index: Final = network.lane_index
+        self.left_hand: Final = network.left_hand
         self._network = network
         self._crossings = crossings(zip(network.edge_start, network.edge_end, strict=True))
         points = network.lane_points
@@ -204,7 +206,12 @@ def _changes(stay: NDArray[np.void], rate: float, lanes: LaneMap) -> Iterator[_C
         if lanes.edge[here] == lanes.edge[there]:
             aside = int(lanes.index[there] - lanes.index[here])
             if end - begin <= 2 * step:
-                yield _Change(begin, end + round(_AFTER * rate), left=aside > 0, turn=False)
+                yield _Change(
+                    begin,
+                    end + round(_AFTER * rate),
+                    left=(aside > 0) != lanes.left_hand,
+                    turn=False,
+                )
             continue
         turned = float(stay["yaw"][end]) - float(stay["yaw"][begin])
         if lanes.meets(here, there) and abs(turned) > _TURN:

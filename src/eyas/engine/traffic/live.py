@@ -30,7 +30,7 @@ from eyas.engine.state.roads import RoadGraph
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.traffic.config import Demand, TrafficConfig, VehicleType
 from eyas.engine.traffic.cover import Cover
-from eyas.engine.traffic.fleet import fleet_of
+from eyas.engine.traffic.fleet import ROOMS, fleet_of
 from eyas.engine.traffic.interpolation import interpolate_actors
 from eyas.engine.traffic.record import WARM_UP, roads_for
 from eyas.engine.traffic.recorded import table_of
@@ -216,8 +216,11 @@ class LiveSumo:
         lamps: bool = False,  # Whether they signal, as SUMO has it
     ) -> None:
         _check_alone()
-        fleet = fleet_of(config, WARM_UP + duration)
-        self._run = SumoRun(roads_for(config, graph), config, fleet, cover)
+        town = bool(graph.finished)
+        # There is no second try.
+        room = ROOMS[1] if town else None
+        fleet = fleet_of(config, WARM_UP + duration, room=room)
+        self._run = SumoRun(roads_for(config, graph), config, fleet, cover, town=town)
         self._end = weakref.finalize(self, self._run.close)
         self._lasting = config.demand is Demand.KEEP_ALIVE
         self._terrain = terrain
@@ -238,7 +241,7 @@ class LiveSumo:
         for _ in range(round(WARM_UP * RATE) - 1):
             self._run.advance()
         self.prepare(0.0)
-        if self._lasting and not self._tracks.present[0].all():
+        if self._lasting and not town and not self._tracks.present[0].all():
             self.close()
             raise no_room(self._tracks.present[0])
         global _running

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.errors import ConfigError, DataFileError
-from eyas.engine.state.roads import RoadNetwork, network_problems
+from eyas.engine.state.roads import LEFT_HAND, RoadNetwork, network_problems
 
 if TYPE_CHECKING:
     import shapely
@@ -94,6 +94,7 @@ class SumoNet:
         if self._root.tag != "net":
             raise self.error(f"its content is <{self._root.tag}>")
         self.version = self._root.get("version", "?")
+        self.left_hand = self._root.get("lefthand") == "true"
 
     @cached_property
     def edges(self) -> tuple[NetEdge, ...]:
@@ -208,7 +209,7 @@ def road_network(
         raise net.error(f"a shape: {error}") from None
     network = RoadNetwork(
         graph_hash=graph_hash,
-        builder=f"network of SUMO's format {net.version}",
+        builder=f"network of SUMO's format {net.version}" + (LEFT_HAND if net.left_hand else ""),
         lane_points=lane_points,
         lane_first=lane_first,
         lane_width=np.array([lane.width for _, _, lane in lanes]),

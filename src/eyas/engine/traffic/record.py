@@ -1,6 +1,7 @@
 """Recording of traffic that SUMO simulates according to the settings."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.metadata import version
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from eyas.engine.state.roads import RoadGraph
 from eyas.engine.traffic.config import Demand, Drivers, Signals, TrafficConfig
 from eyas.engine.traffic.cover import Cover, cover_hash
-from eyas.engine.traffic.fleet import fleet_of, simplest
+from eyas.engine.traffic.fleet import ROOMS, fleet_of, simplest
 from eyas.engine.traffic.network import graph_hash, network_xml
 from eyas.engine.traffic.recording import (
     ANGLE_UNIT,
@@ -21,9 +22,13 @@ from eyas.engine.traffic.recording import (
 from eyas.engine.traffic.smoothing import held
 from eyas.engine.traffic.sumo import RATE, Drive, drive, options
 from eyas.engine.traffic.sumo_install import sumo_version
+from eyas.lanes import exact
 
 WARM_UP = 60.0
 """Simulated time before the recording begins, in which vehicles spread over the map [s]."""
+
+_JAM = 0.6  # Share of their time standing from which on vehicles are in a jam
+_CREEP = 0.1  # Speed of what stands, at most [m/s]
 
 GROUP_SHARE = 3  # Least number of vehicles in a group for each tracker, as in the original
 
@@ -49,9 +54,23 @@ def record(
     cover = cover if config.drivers is not Drivers.NORMAL else ()
     origin = provenance(map_name, map_seed, graph_hash(graph), config, duration, cover)
     span = (WARM_UP, WARM_UP + duration)
-    fleet = fleet_of(config, span[1])
-    raw = drive(roads_for(config, graph), config, fleet, cover, span, progress)
-    return _as_recording(raw, origin)
+    town = bool(graph.finished)
+    origin = replace(origin, options=options(config, town=town))
+    for room in ROOMS if town else (None,):
+        fleet = fleet_of(config, span[1], room=room)
+        raw = drive(roads_for(config, graph), config, fleet, cover, span, progress, town=town)
+        if standing(raw) < _JAM:
+            break
+    return as_recording(raw, origin)
+
+
+def standing(raw: Drive) -> float:
+    """Return the share of their time in which vehicles stand."""
+    moved = (
+        np.asarray(exact.hypot(*np.moveaxis(np.diff(raw.position, axis=0), -1, 0))) > _CREEP / RATE
+    )
+    there = raw.present[1:] & raw.present[:-1]
+    return 1.0 - float(moved[there].mean()) if there.any() else 0.0
 
 
 def roads_for(config: TrafficConfig, graph: RoadGraph) -> bytes:
@@ -121,7 +140,8 @@ def provenance(
     )
 
 
-def _as_recording(raw: Drive, origin: Provenance) -> TrafficRecording:
+def as_recording(raw: Drive, origin: Provenance) -> TrafficRecording:
+    """Return what SUMO has driven as a recording."""
     position = np.zeros_like(raw.position)
     yaw = np.zeros_like(raw.yaw)
     for actor in range(raw.present.shape[1]):

@@ -37,14 +37,11 @@ class Entrance:
         sumo: ModuleType,
         fleet: Iterator[Departure],  # The vehicles, the earliest first
         actors: Sequence[VehicleType],  # Class of each actor: there is room for so many vehicles
-        demand: Demand,  # When vehicles enter and leave
     ) -> None:
         self.entered: list[VehicleType] = []
         self._sumo = sumo
         self._fleet = fleet
         self._room = Counter(actors)
-        # Vehicles that never leave start anywhere; those of a group start where an edge begins.
-        self._place = "random_free" if demand is Demand.KEEP_ALIVE else "base"
         self._waiting = {name: deque[Departure]() for name in self._room}
         self._next = next(fleet, None)
 
@@ -56,7 +53,12 @@ class Entrance:
             name = str(len(self.entered))
             self._sumo.route.add(name, entry.route)
             self._sumo.vehicle.add(
-                name, name, entry.vehicle_type.value, departLane="best", departPos=self._place
+                name,
+                name,
+                entry.vehicle_type.value,
+                departLane="best",
+                departPos=entry.place,
+                departSpeed=entry.speed,
             )
             self.entered.append(entry.vehicle_type)
             self._room[entry.vehicle_type] -= 1
@@ -115,9 +117,13 @@ _SLOW = 10.0
 """Below it, drivers who decide twice a second exceed their maximum until they decide again: of 5
 m/s by up to 5 m/s, 0.4 % of the time [m/s]."""
 
+_PATIENT = ("--time-to-teleport", "-1")  # Never teleport a vehicle out of a jam or an accident
+
+_STUCK = ("--time-to-teleport", "150", "--time-to-teleport.remove", "true")
+"""In streets that no recipe has drawn, who has stood for so long, longer than any red light, is
+taken away [s]: else all of Kingsway, a junction in Manchester, stands after some minutes."""
+
 _OPTIONS = (
-    # Never teleport a vehicle out of a jam or an accident.
-    *("--time-to-teleport", "-1"),
     *("--collision.action", "none"),
     *("--no-warnings", "true"),
     *("--no-step-log", "true"),
@@ -157,11 +163,12 @@ class Drive:
         )
 
 
-def options(config: TrafficConfig) -> tuple[str, ...]:
+def options(config: TrafficConfig, *, town: bool = False) -> tuple[str, ...]:
     """Return SUMO's options, except the network, the seed and the step length."""
     seldom = config.demand is Demand.KEEP_ALIVE and config.max_speed >= _SLOW
     # Vehicles move gradually to the next lane instead of jumping 3.5 m in one step.
-    return ("--lateral-resolution", "0.8", *(_SELDOM if seldom else ()), *_OPTIONS)
+    jams = _STUCK if town else _PATIENT
+    return ("--lateral-resolution", "0.8", *(_SELDOM if seldom else ()), *jams, *_OPTIONS)
 
 
 def drive(
@@ -172,6 +179,8 @@ def drive(
     span: tuple[float, float],  # First and last time of the samples [s]
     # Called with the completed share, 0 to 1, each simulated second
     progress: Callable[[float], None] | None,
+    *,
+    town: bool = False,  # Whether no recipe has drawn the roads, so that not all may find room
 ) -> Drive:
     """Run SUMO and return the poses of its vehicles.
 
@@ -181,14 +190,14 @@ def drive(
             for all who never leave: told before the whole time is simulated.
     """
     skipped, steps = round(span[0] * RATE), round(span[1] * RATE)
-    with closing(SumoRun(network, config, fleet, cover)) as run:
+    with closing(SumoRun(network, config, fleet, cover, town=town)) as run:
         result = Drive.create(steps - skipped + 1, run.actors, run.vehicle_length)
         for step in range(1, steps + 1):
             run.advance()
             if step >= skipped:
                 run.read(result, step - skipped)
-            everyone = config.demand is Demand.RESPAWN or result.present[0].all()
-            if step == skipped and not everyone:
+            needed = not town and config.demand is Demand.KEEP_ALIVE
+            if step == skipped and needed and not result.present[0].all():
                 raise no_room(result.present[0])
             if progress and step % RATE == 0:
                 progress(step / steps)
@@ -238,17 +247,19 @@ class SumoRun:
         config: TrafficConfig,  # Settings of the traffic; the seed is a number
         fleet: Fleet,  # The vehicles
         cover: Cover = (),  # The stretches of lanes in which drivers hide
+        *,
+        town: bool = False,  # Whether no recipe has drawn the roads
     ) -> None:
         self.actors = vehicle_types(config)
         classes = tuple(dict.fromkeys(self.actors))
         self._slots = ActorSlots(self.actors)
         self._steps = 0
         with ExitStack() as stack:
-            self.sumo = stack.enter_context(_simulation(network, config, classes))
+            self.sumo = stack.enter_context(_simulation(network, config, classes, town=town))
             length = {name: self.sumo.vehicletype.getLength(name.value) for name in classes}
             self.vehicle_length = np.array([length[name] for name in self.actors], np.float64)
             links = {name: _read_links(self.sumo, name) for name in classes}
-            self._entrance = Entrance(self.sumo, fleet(links), self.actors, config.demand)
+            self._entrance = Entrance(self.sumo, fleet(links), self.actors)
             usual = config.drivers is Drivers.NORMAL
             self._manoeuvres = None if usual else Manoeuvres(self.sumo, config, cover, links)
             self._stack = stack.pop_all()
@@ -295,7 +306,7 @@ class SumoRun:
 
 @contextmanager
 def _simulation(
-    network: bytes, config: TrafficConfig, classes: Sequence[VehicleType]
+    network: bytes, config: TrafficConfig, classes: Sequence[VehicleType], *, town: bool = False
 ) -> Iterator[ModuleType]:
     sumo = import_libsumo()
     if sumo.simulation.isLoaded():
@@ -309,7 +320,7 @@ def _simulation(
         types.write_text(f"<additional>{lines}</additional>")
         files = ("--net-file", str(roads), "--additional-files", str(types))
         clock = ("--step-length", str(1 / RATE), "--seed", str(config.seed))
-        sumo.start(["sumo", *files, *clock, *options(config)])
+        sumo.start(["sumo", *files, *clock, *options(config, town=town)])
         try:
             yield sumo
         finally:

@@ -3,7 +3,9 @@
 import importlib
 import os
 import sys
+from contextlib import redirect_stdout
 from importlib.metadata import PackageNotFoundError, version
+from io import StringIO
 from pathlib import Path
 from types import ModuleType
 
@@ -42,7 +44,8 @@ def import_libsumo() -> ModuleType:
         MissingExtraError: SUMO, or a system library it needs, is not installed.
     """
     os.environ.setdefault("SUMO_HOME", str(_home()))
-    return _imported("libsumo")
+    with redirect_stdout(StringIO()):  # it prints advice about pyarrow, which nothing here uses
+        return _imported("libsumo")
 
 
 def sumo_version(

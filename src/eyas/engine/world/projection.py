@@ -53,7 +53,9 @@ class Projection:
         slope = sine / cosine
         t, c = slope * slope, _EP2 * (cosine * cosine)
         n = _A / np.sqrt(1 - _E2 * (sine * sine))
-        a = (longitude - self.longitude) * _RADIAN * cosine
+        away = longitude - self.longitude
+        away = away - 360.0 * np.round(away / 360.0)  # the shorter way round the earth
+        a = away * _RADIAN * cosine
         square = a * a
         east = n * (
             a

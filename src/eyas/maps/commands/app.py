@@ -51,21 +51,61 @@ def draw_gallery(
 
 
 @app.command("import")
-def import_map(
-    file: Annotated[Path, typer.Argument(help="OpenStreetMap: .osm, .osm.gz or .osm.pbf.")],
+def import_map(  # noqa: PLR0913  # its options
+    file: Annotated[
+        Path, typer.Argument(help="Of OpenStreetMap (.osm, .osm.pbf, ...) or SUMO (.net.xml).")
+    ],
     name: Annotated[str | None, typer.Option("--name", help="Name of the map.")] = None,
     out: Annotated[Path | None, to_write("Folder of the map; then use --map FOLDER.")] = None,
     bbox: Annotated[
         str | None, typer.Option("--bbox", help="Only WEST,SOUTH,EAST,NORTH, in degrees.")
     ] = None,
+    drive_on: Annotated[
+        str | None,
+        typer.Option("--drive-on", help="left or right; by default as the file or the place says."),
+    ] = None,
+    routes: Annotated[
+        list[Path] | None,
+        typer.Option("--routes", help="SUMO: the vehicles that drive, .rou.xml; several times."),
+    ] = None,
+    sumocfg: Annotated[
+        Path | None, typer.Option("--sumocfg", help="SUMO: what names their files, .sumocfg.")
+    ] = None,
+    buildings: Annotated[bool, typer.Option(help="SUMO: make houses along the streets.")] = True,
     traffic: Annotated[bool, typer.Option(help="Record the traffic now, not on first use.")] = True,
     overwrite: Overwrite = False,
 ) -> None:
-    """Make a map of an OpenStreetMap file; use it with --map NAME, or --map DIR with --out DIR."""
+    """Make a map of OpenStreetMap or SUMO; use it with --map NAME, or --map DIR with --out DIR."""
+    from eyas.maps.osm.driving_side import SIDES
     from eyas.maps.osm.importing import run
+    from eyas.maps.sumo import importing as sumo
 
+    if sumo.is_sumo(file):
+        given = {"--bbox": bbox is not None, "--drive-on": drive_on is not None}
+    else:
+        given = {"--routes": bool(routes), "--sumocfg": sumocfg is not None}
+    for option, used in given.items():
+        if used:
+            raise ConfigError(f"{option}: is not for {file.name!r}")
+    if sumo.is_sumo(file):
+        report = sumo.run(
+            file,
+            name,
+            routes or (),
+            sumocfg,
+            out=out,
+            buildings=buildings,
+            record=traffic,
+            overwrite=overwrite,
+        )
+        typer.echo("\n".join(report.lines()))
+        return
     bounds = _bounds(bbox)
-    report = run(file, name, out=out, bounds=bounds, record=traffic, overwrite=overwrite)
+    if drive_on not in (None, *SIDES):
+        raise ConfigError(f"--drive-on: {drive_on!r} is not allowed; allowed: left, right")
+    report = run(
+        file, name, out=out, bounds=bounds, drive_on=drive_on, record=traffic, overwrite=overwrite
+    )
     for line in report.lines():
         typer.echo(line)
 

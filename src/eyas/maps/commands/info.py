@@ -124,6 +124,7 @@ class MapFacts:
     original: Original | None  # Figures of the map of the DAT benchmark that it stands for
     recorded_traffic: list[str]  # Names of the recordings that ship with it
     folder: str | None  # Folder of an imported map; None: it comes with Eyas
+    drive_on: str  # The side of the road on which one drives, `left` or `right`
     attribution: list[str]  # Notices of whose data the map is made of
 
 
@@ -151,6 +152,7 @@ def about(name: str, seed: int) -> MapFacts:
             if recipe.home is not None or _town_of(file) == seed
         ],
         folder=None if recipe.home is None else str(recipe.home),
+        drive_on="left" if scene.network.left_hand else "right",
         attribution=recipe.attribution().splitlines(),
     )
 
@@ -170,7 +172,7 @@ def describe(name: str, seed: int) -> list[str]:
         f"floor: {said.size[0]:.0f} x {said.size[1]:.0f} m; streets within {said.area:.2f} km2",
         f"streets: {said.road:.2f} km, {said.between:.2f} km without junctions "
         f"({said.road / area:.1f} km per km2)",
-        f"lanes: {said.lanes:.2f} km; lamps: {said.lamps}",
+        f"lanes: {said.lanes:.2f} km; lamps: {said.lamps}; traffic keeps {known.drive_on}",
         f"buildings: {said.buildings} ({said.buildings / area:.0f} per km2), "
         f"median height {said.height:.0f} m",
         f"trees: {said.trees} ({said.trees / area:.0f} per km2)"

@@ -8,7 +8,9 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
+from rich.console import Console
 
+from eyas.engine.core.errors import EyasError
 from eyas.engine.core.files import atomic_path
 from eyas.engine.sim.scenes import load_scene
 from eyas.engine.state.scene import ObjectClass, Scene
@@ -42,19 +44,29 @@ def run(name: str, seed: int, path: Path, width: int, *, tracks: bool) -> None:
         tracks: Whether the ways of the recorded cars are drawn.
 
     Raises:
-        EyasError: The map cannot be built, its traffic not recorded, or the file not written.
+        EyasError: The map cannot be built, or the file not written.
     """
     scene = load_scene(name, seed)
     driven: list[Points] = []
     if tracks:
-        recipe = MAPS.get(name)
-        shipped = recipe.shipped_traffic()
-        recording = find_recording(recipe.roads(seed), TrafficConfig(seed=None), shipped=shipped)
-        for car in range(recording.actors):
-            there = recording.present[:, car]
-            driven += [recording.position[low:high, car] for low, high in _runs(there)]
+        try:
+            driven = _driven(name, seed)
+        except EyasError as error:  # the map itself is fine
+            note = f"without the ways of its cars: {error}"
+            Console(stderr=True).print(note, markup=False, soft_wrap=True)
     with atomic_path(path) as part:
         _picture(scene, driven, width, _notice(name)).save(part, format="PNG")
+
+
+def _driven(name: str, seed: int) -> list[Points]:
+    recipe = MAPS.get(name)
+    shipped = recipe.shipped_traffic()
+    recording = find_recording(recipe.roads(seed), TrafficConfig(seed=None), shipped=shipped)
+    return [
+        recording.position[low:high, car]
+        for car in range(recording.actors)
+        for low, high in _runs(recording.present[:, car])
+    ]
 
 
 def _notice(name: str) -> str:

@@ -9,7 +9,7 @@ from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import refusals, write_atomic
 from eyas.engine.core.scratch import scratch
 from eyas.engine.traffic.config import Signals, TrafficConfig
-from eyas.engine.traffic.fleet import fleet_of
+from eyas.engine.traffic.fleet import ROOMS, fleet_of
 from eyas.engine.traffic.library import CANONICAL_SEED, STANDARD_DURATION
 from eyas.engine.traffic.network import network_xml
 from eyas.engine.traffic.record import resolved
@@ -19,16 +19,18 @@ from eyas.engine.world.maps import MAPS
 
 
 def _files_of_network(
-    name: str, network: bytes, config: TrafficConfig, duration: float
+    name: str, network: bytes, config: TrafficConfig, duration: float, *, town: bool
 ) -> Mapping[str, bytes]:
     """Return what `sumo -c NAME.sumocfg` needs for the traffic of a map, by names of files."""
-    types, departures = departures_and_types(network, config, fleet_of(config, duration))
+    room = ROOMS[1] if town else None
+    types, departures = departures_and_types(network, config, fleet_of(config, duration, room=room))
     lines = ["<routes>", types]
     for number, each in enumerate(departures):
         edges = " ".join(each.route)
         lines.append(
             f'<vehicle id="{number}" type="{each.vehicle_type.value}" depart="{each.time:.3f}" '
-            f'departLane="best" departPos="random_free"><route edges="{edges}"/></vehicle>'
+            f'departLane="best" departPos="{each.place}" departSpeed="{each.speed}">'
+            f'<route edges="{edges}"/></vehicle>'
         )
     lines += ["</routes>", ""]
     roads, routes = f"{name}.net.xml", f"{name}.rou.xml"
@@ -39,7 +41,7 @@ def _files_of_network(
         ("end", f"{duration:g}"),
         ("step-length", f"{1 / RATE:g}"),
         ("seed", str(config.seed)),
-        *_pairs(options(config)),
+        *_pairs(options(config, town=town)),
     ]
     settings = "\n".join(f'<{key} value="{value}"/>' for key, value in told)
     return {
@@ -118,7 +120,8 @@ def sumo_files_of(name: str, seed: int, stem: str) -> Mapping[str, bytes]:
         EyasError: SUMO is not installed.
     """
     config = resolved(TrafficConfig(signals=Signals.WORKING), CANONICAL_SEED)
-    return _files_of_network(stem, _network(name, seed), config, STANDARD_DURATION)
+    town = bool(MAPS.get(name).roads(seed).finished)
+    return _files_of_network(stem, _network(name, seed), config, STANDARD_DURATION, town=town)
 
 
 def write_opendrive(name: str, seed: int, path: Path) -> None:

@@ -7,7 +7,7 @@ import shapely
 from eyas.engine.world.roads.areas import polygons_of
 from eyas.maps.osm.features import House, Roof
 from eyas.maps.osm.measures import Odd, colour, length, number
-from eyas.maps.osm.reader import Tags
+from eyas.maps.osm.reader import Bounds, OsmData, Tags
 from eyas.maps.osm.rings import OsmShapes
 
 _ROOFS: dict[str, Roof] = {
@@ -49,6 +49,17 @@ def houses_of(
         if not inside or rest.area > (1.0 - _COVERED) * house.shape.area:
             whole += [_piece(house, one) for one in polygons_of(rest) if one.area > 4.0]
     return whole + parts
+
+
+def buildings_beyond(data: OsmData, limits: Bounds) -> int:
+    """Return the number of buildings that lie outside of an area."""
+    west, south, east, north = limits
+    count = 0
+    for way in data.ways.values():
+        places = [data.places[node] for node in way.nodes if node in data.places]
+        if places and _is_house(way.tags):
+            count += not any(west <= x <= east and south <= y <= north for x, y in places)
+    return count
 
 
 def _is_house(tags: Tags) -> bool:

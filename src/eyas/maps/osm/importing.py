@@ -41,21 +41,25 @@ from eyas.engine.traffic.net_file import (
     signalled_edges,
 )
 from eyas.engine.traffic.network import graph_hash
+from eyas.engine.traffic.recording_file import RecordingFile
 from eyas.engine.world.build.millimetres import snapped
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE, NETWORK_FILE, PLAN_FILE, TRAFFIC_FILE
 from eyas.engine.world.projection import Projection
 from eyas.engine.world.roads.areas import polygons_of
 from eyas.engine.world.roads.network_file import save_network
+from eyas.lanes import exact
 from eyas.maps.files import MAP_FILE, ROADS_FILE, Origin, maps_folder
+from eyas.maps.osm.driving_side import tagged_side, usual_side
 from eyas.maps.osm.features import Survey
-from eyas.maps.osm.houses import houses_of
+from eyas.maps.osm.houses import buildings_beyond, houses_of
 from eyas.maps.osm.land import add_land
-from eyas.maps.osm.reader import Bounds, OsmData, covered, read_osm
+from eyas.maps.osm.reader import Bounds, OsmData, covered, no_streets, read_osm
 from eyas.maps.osm.rings import OsmShapes
-from eyas.maps.osm.streets import osm_network, street_file
+from eyas.maps.osm.streets import is_street, osm_network, street_file
 from eyas.maps.plan.file import write_plan
 from eyas.maps.plan.plan import MapPlan, Roads
+from eyas.maps.traffic.about import coverage
 
 
 @dataclass(slots=True)
@@ -76,7 +80,11 @@ class Report:
     """Number of values that made no sense, by tag."""
     broken: Counter[str] = field(default_factory=Counter)
     """Number of outlines that were mended or left out, by what was wrong."""
+    left_out: Counter[str] = field(default_factory=Counter)
+    """Number of things that are not on the map, by what and why."""
+    side: str = ""  # The side of the road on which one drives, and how that is known
     traffic: str = ""  # What was recorded, or why nothing was
+    notices: tuple[str, ...] = ("© OpenStreetMap contributors",)
     seconds: float = 0.0
 
     @property
@@ -94,11 +102,12 @@ class Report:
             f"kept in {self.folder}; use it with --map {shlex.quote(self.known_as)}",
         ]
         for word, counted in (("guessed", self.guessed), ("odd tags", self.odd),
-                              ("mended or left out", self.broken)):  # fmt: skip
+                              ("mended or left out", self.broken),
+                              ("left out", self.left_out)):  # fmt: skip
             if counted:
                 parts = ", ".join(f"{count} {what}" for what, count in sorted(counted.items()))
                 made.append(f"{word}: {parts}")
-        return [*made, self.traffic, "© OpenStreetMap contributors"]
+        return [*made, self.side, self.traffic, *self.notices]
 
 
 ATTRIBUTION = """\
@@ -110,7 +119,8 @@ Pictures, films and data sets made from it must show this notice; a data base ma
 offered under the same licence.
 """
 
-_LARGEST = 6000.0  # Longest side of a map [m]
+_LARGEST = 8000.0  # Longest side of a map [m]
+_SEAM = 179.0  # Longitude beyond which an area may lie across the date line [degrees]
 _SMALLEST = 40.0
 _MARGIN = 30.0  # Floor beyond the imported area [m]
 
@@ -121,16 +131,18 @@ def run(
     *,
     out: Path | None = None,
     bounds: Bounds | None = None,
+    drive_on: str | None = None,
     record: bool = True,
     overwrite: bool = False,
 ) -> Report:
     """Import a file of OpenStreetMap.
 
     Args:
-        path: The file: `.osm`, `.osm.gz` or `.osm.pbf`.
+        path: The file: `.osm`, `.osm.gz`, `.osm.bz2` or `.osm.pbf`.
         name: Name of the map; None: the file's.
         out: Folder of the map; None: below the user's folder of maps.
         bounds: Area to import, in degrees; None: all that the file covers.
+        drive_on: `left` or `right`; None: as the file says, or else as usual at the place.
         record: Whether the traffic is recorded now; otherwise on first use.
         overwrite: Whether a map of that name is replaced.
 
@@ -138,27 +150,28 @@ def run(
         EyasError: The file is damaged, or the map cannot be made or written.
     """
     begun = time.monotonic()
-    name = _name(name if name is not None else re.sub(r"\.osm(\.\w+)?$|\.pbf$", "", path.name))
+    name = name_of(name if name is not None else re.sub(r"\.osm(\.\w+)?$|\.pbf$", "", path.name))
     folder = (out if out is not None else maps_folder() / name).absolute()
-    _check_free(folder, name, overwrite=overwrite, own=out is None)
+    check_free(folder, name, overwrite=overwrite, own=out is None)
     report = Report(name, folder, registered=out is None)
     data = read_osm(path)
     place = _place(data, bounds, str(path))
-    streets = _streets(data, place, report)
+    streets = _streets(data, place, _side(data, place, drive_on, report), report)
     survey = _survey(data, place, streets, report)
     origin = Origin(
         name, f"Imported from OpenStreetMap: {path.name}", path.name,
-        place.projection.longitude, place.projection.latitude, place.size,
+        round((place.projection.longitude + 180.0) % 360.0 - 180.0, 7),
+        place.projection.latitude, place.size,
     )  # fmt: skip
-    _write(folder, streets, _plan(origin, survey), origin)
+    write_map(folder, streets, _plan(origin, survey), origin)
     if out is None:
         register_map(name)
-    report.traffic = _recorded(streets.graph, folder, record=record)
+    report.traffic = recorded(streets, folder, record=record)
     report.seconds = time.monotonic() - begun
     return report
 
 
-def _name(text: str) -> str:
+def name_of(text: str) -> str:
     """Return a name that a map can have."""
     name = re.sub(r"\W+", "-", text).strip("-")
     if not name:
@@ -166,7 +179,15 @@ def _name(text: str) -> str:
     return name
 
 
-def _check_free(folder: Path, name: str, *, overwrite: bool, own: bool) -> None:
+def check_free(folder: Path, name: str, *, overwrite: bool, own: bool) -> None:
+    """Refuse a folder that holds something else, or a map that is not to be replaced.
+
+    Args:
+        own: Whether the folder is that of the name.
+
+    Raises:
+        EyasError: It is refused.
+    """
     if own and name in MAPS.built_in:
         raise ConfigError(f"--name: {name!r} is a map of Eyas; choose another name")
     if not folder.exists():
@@ -182,6 +203,7 @@ class _Place(NamedTuple):
 
     source: str  # name of the file, for messages
     limits: Bounds  # [degrees]
+    meridian: float  # From where netconvert counts longitudes [degrees]
     projection: Projection
     extent: shapely.Polygon  # the imported area [m]
     size: tuple[float, float]  # of the floor [m]
@@ -190,13 +212,15 @@ class _Place(NamedTuple):
 def _place(data: OsmData, bounds: Bounds | None, source: str) -> _Place:
     """Return the area to import, in degrees and in metres around its middle."""
     west, south, east, north = limits = covered(data, bounds, source)
-    projection = Projection(round((west + east) / 2, 7), round((south + north) / 2, 7))
+    middle = round((west + east) / 2, 7)
+    projection = Projection(middle, round((south + north) / 2, 7))
     corners = projection.metres([(west, south), (east, south), (east, north), (west, north)])
     width, height = np.ptp(corners, axis=0)
     if max(width, height) > _LARGEST:
         raise DataFileError(
             f"{source}: covers {width / 1000:.1f} x {height / 1000:.1f} km; at most "
-            f"{_LARGEST / 1000:g} km are imported: name a part with --bbox WEST,SOUTH,EAST,NORTH"
+            f"{_LARGEST / 1000:g} km are imported: name a part with --bbox WEST,SOUTH,EAST,NORTH, "
+            f"for example its middle: --bbox {_middle_of(data, limits)}"
         )
     if min(width, height) < _SMALLEST:
         raise DataFileError(
@@ -206,10 +230,40 @@ def _place(data: OsmData, bounds: Bounds | None, source: str) -> _Place:
     extent = shapely.Polygon(corners)
     x, y = np.abs(shapely.get_coordinates(extent)).max(axis=0)
     size = 2 * float(np.ceil(x + _MARGIN)), 2 * float(np.ceil(y + _MARGIN))
-    return _Place(source, limits, projection, extent, size)
+    meridian = middle if max(-west, east) > _SEAM else 0.0
+    return _Place(source, limits, meridian, projection, extent, size)
 
 
-class _Streets(NamedTuple):
+def _middle_of(data: OsmData, limits: Bounds) -> str:
+    """Return a part of a large area as `--bbox` takes it, in the middle of its streets."""
+    nodes = [node for way in data.ways.values() if is_street(way.tags) for node in way.nodes]
+    places = np.array([data.places[node] for node in nodes if node in data.places] or [limits[:2]])
+    west, south, east, north = limits
+    inside = ((places >= (west, south)) & (places <= (east, north))).all(axis=1)
+    x, y = (
+        np.median(places[inside], axis=0)
+        if inside.any()
+        else (0.5 * (west + east), 0.5 * (south + north))
+    )
+    dy = 0.3 * _LARGEST / 111_000.0
+    dx = dy / float(exact.cos(np.radians(y)))
+    x = (x + 180.0) % 360.0 - 180.0
+    return ",".join(f"{each:.4f}" for each in (x - dx, y - dy, x + dx, y + dy))
+
+
+def _side(data: OsmData, place: _Place, asked: str | None, report: Report) -> str:
+    """Return the side of the road on which one drives."""
+    tagged, usual = (
+        tagged_side(data),
+        usual_side(place.projection.longitude, place.projection.latitude),
+    )
+    side = asked or tagged or usual
+    why = "--drive-on" if asked else "the file's driving_side" if tagged else "the place"
+    report.side = f"traffic keeps {side} ({why}); --drive-on changes it"
+    return side
+
+
+class Streets(NamedTuple):
     """The streets, as netconvert has made them."""
 
     graph: RoadGraph  # holds the bytes of SUMO's file
@@ -217,19 +271,32 @@ class _Streets(NamedTuple):
     network: RoadNetwork
 
 
-def _streets(data: OsmData, place: _Place, report: Report) -> _Streets:
+def _streets(data: OsmData, place: _Place, side: str, report: Report) -> Streets:
     """Return the streets for cars within the area."""
-    cut = street_file(data, place.limits, lambda key: report.odd.update([key]))
-    finished = osm_network(cut, place.projection.text, place.source)
+    left_hand = side == "left"
+    cut = street_file(
+        data,
+        place.limits,
+        lambda key: report.odd.update([key]),
+        lambda what: report.left_out.update([what]),
+        left_hand=left_hand,
+        meridian=place.meridian,
+    )
+    if b"<way " not in cut:
+        raise no_streets(data, place.source)
+    projection = replace(
+        place.projection, longitude=round(place.projection.longitude - place.meridian, 7)
+    )
+    finished = osm_network(cut, projection.text, place.source, left_hand=left_hand)
     graph, net = RoadGraph(report.name, 0, (), (), finished), SumoNet(finished)
     network = road_network(net, graph_hash(graph))
     report.size, report.lanes, report.signals = (
         place.size, len(network.lane_width), len(net.programs),
     )  # fmt: skip
-    return _Streets(graph, net, network)
+    return Streets(graph, net, network)
 
 
-def _survey(data: OsmData, place: _Place, streets: _Streets, report: Report) -> Survey:
+def _survey(data: OsmData, place: _Place, streets: Streets, report: Report) -> Survey:
     """Return everything but the streets, and count what is not told."""
 
     def odd(key: str) -> None:
@@ -239,6 +306,8 @@ def _survey(data: OsmData, place: _Place, streets: _Streets, report: Report) -> 
         data, place.projection, place.extent, lambda what: report.broken.update([what])
     )
     survey = Survey(houses=houses_of(shapes, odd))
+    report.left_out["buildings beyond the area"] += buildings_beyond(data, place.limits)
+    report.left_out += Counter()  # drops what there was none of
     add_land(survey, shapes, odd, stream(0, "imported tree rows"))
     # Without the lines in which sidewalks of bridges meet others.
     pavement = snapped(pavement_area(streets.net))
@@ -268,7 +337,9 @@ def _plan(origin: Origin, survey: Survey) -> MapPlan:
     )
 
 
-def _write(folder: Path, streets: _Streets, plan: MapPlan, origin: Origin) -> None:
+def write_map(
+    folder: Path, streets: Streets, plan: MapPlan, origin: Origin, attribution: str = ATTRIBUTION
+) -> None:
     """Write the map, in the place of what the folder holds."""
     with refusals(folder):
         if folder.exists():
@@ -277,7 +348,7 @@ def _write(folder: Path, streets: _Streets, plan: MapPlan, origin: Origin) -> No
     write_atomic(folder / ROADS_FILE, gzip.compress(streets.graph.finished, mtime=0))
     save_network(folder / NETWORK_FILE, streets.network)
     write_plan(folder / PLAN_FILE, plan)
-    write_atomic(folder / ATTRIBUTION_FILE, ATTRIBUTION.encode())
+    write_atomic(folder / ATTRIBUTION_FILE, attribution.encode())
     kept = (ROADS_FILE, NETWORK_FILE, PLAN_FILE, ATTRIBUTION_FILE)
     flushed(folder / name for name in kept)
     origin = replace(origin, checksums={name: sum_of(folder / name) for name in kept})
@@ -286,14 +357,14 @@ def _write(folder: Path, streets: _Streets, plan: MapPlan, origin: Origin) -> No
     MAPS.forget()
 
 
-def _recorded(graph: RoadGraph, folder: Path, *, record: bool) -> str:
+def recorded(streets: Streets, folder: Path, *, record: bool) -> str:
     """Record the canonical traffic; return a sentence about it."""
     if not record:
         return "traffic: recorded on first use"
     try:
         with sumo_progress() as progress:
-            record_canonical(graph, folder / TRAFFIC_FILE, progress=progress)
+            record_canonical(streets.graph, folder / TRAFFIC_FILE, progress=progress)
+        return coverage(RecordingFile.read(folder / TRAFFIC_FILE).load(), streets.network)
     except EyasError as error:
         Console(stderr=True).print(f"no traffic recorded: {error}", markup=False, soft_wrap=True)
-        return "traffic: none recorded; try fewer vehicles with --set traffic.max_vehicles=10"
-    return "traffic: 40 cars for 21 minutes, recorded with SUMO; other traffic on first use"
+        return "traffic: none recorded; targets that walk need none: --set target=PEDESTRIAN"

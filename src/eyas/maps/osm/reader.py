@@ -1,8 +1,11 @@
-"""OpenStreetMap files: `.osm`, `.osm.gz` and `.osm.pbf`, told apart by their content."""
+"""OpenStreetMap files: `.osm`, plain or packed, and `.osm.pbf`, told apart by their content."""
 
+import bz2
 import gzip
 import zlib
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -93,6 +96,9 @@ def _take_pbf(one: Any, data: OsmData) -> None:  # noqa: ANN401  # pyosmium need
         data.relations.append(Relation(number, members, tags))
 
 
+_PACKED: dict[bytes, Callable[[Path], Any]] = {b"\x1f\x8b": gzip.open, b"BZ": bz2.open}
+"""What opens packed files, by how they begin."""
+
 _LARGEST = 400 << 20
 """Largest file, packed and unpacked [bytes]; one of a dense square kilometre has about 6 MB."""
 
@@ -121,13 +127,28 @@ def read_osm(path: Path) -> OsmData:
         from eyas.maps.osm.reader import read_pbf  # pyosmium, which is optional
 
         data = read_pbf(path)
-    elif start.startswith(b"\x1f\x8b") or start.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
-        data = _read_xml(path, compressed=start.startswith(b"\x1f\x8b"))
+    elif start.startswith(tuple(_PACKED)) or start.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
+        data = _read_xml(path, _PACKED.get(start[:2], partial(Path.open, mode="rb")))
     else:
-        raise DataFileError(f"{path}: not an OpenStreetMap file (.osm, .osm.gz or .osm.pbf)")
+        raise DataFileError(
+            f"{path}: not an OpenStreetMap file (.osm, .osm.gz, .osm.bz2 or .osm.pbf)"
+        )
     if not data.places:
         raise DataFileError(f"{path}: has no nodes, so there is nothing to import")
+    _unroll(data)
     return data
+
+
+def _unroll(data: OsmData) -> None:
+    """Let longitudes of a place at the date line count on beyond 180 degrees."""
+    longitudes = [x for x, _ in data.places.values()]
+    if max(longitudes) - min(longitudes) <= 180.0:
+        return
+    data.places = {node: (x % 360.0, y) for node, (x, y) in data.places.items()}
+    if data.bounds is not None:
+        west, south, east, north = data.bounds
+        west, east = west % 360.0, east % 360.0
+        data.bounds = (west, south, east, north) if west < east else None
 
 
 def covered(data: OsmData, asked: Bounds | None, source: str) -> Bounds:
@@ -139,7 +160,10 @@ def covered(data: OsmData, asked: Bounds | None, source: str) -> Bounds:
     """
     if asked is not None:
         west, south, east, north = asked
-        if not (-180 <= west < east <= 180 and -80 <= south < north <= 80):
+        if any(x > 180.0 for x, _ in data.places.values()):
+            west, east = west % 360.0, east % 360.0
+            asked = west, south, east, north
+        if not (-180 <= west < east <= 360 and -80 <= south < north <= 80):
             raise ConfigError(
                 f"--bbox: {asked} is not allowed; allowed: west, south, east and north in degrees"
             )
@@ -147,7 +171,7 @@ def covered(data: OsmData, asked: Bounds | None, source: str) -> Bounds:
             raise ConfigError(f"--bbox: nothing of {source} lies within {asked}")
         return asked
     if data.bounds is not None:
-        return data.bounds
+        return _with_drawn(data, data.bounds)
     on_streets = [
         data.places[node]
         for way in data.ways.values()
@@ -156,17 +180,41 @@ def covered(data: OsmData, asked: Bounds | None, source: str) -> Bounds:
         if node in data.places
     ]
     if not on_streets:
-        raise DataFileError(f"{source}: has no streets (ways with the tag 'highway')")
+        raise no_streets(data, source)
     x, y = zip(*on_streets, strict=True)
     return min(x), min(y), max(x), max(y)
 
 
-def _read_xml(path: Path, *, compressed: bool) -> OsmData:
+def no_streets(data: OsmData, source: str) -> DataFileError:
+    """Return the error about a file without streets for cars."""
+    lanelets = any(one.tags.get("type") == "lanelet" for one in data.relations)
+    if lanelets:
+        return DataFileError(f"{source}: is a map of Lanelet2, which is not read")
+    return DataFileError(
+        f"{source}: has no streets for cars there (ways with the tag 'highway' and places)"
+    )
+
+
+def _with_drawn(data: OsmData, bounds: Bounds) -> Bounds:
+    """Return the area, and around it the streets that an editor has drawn beyond it (JOSM)."""
+    west, south, east, north = bounds
+    for way in data.ways.values():
+        places = [data.places[node] for node in way.nodes if node in data.places]
+        if way.id < 0 and places and "highway" in way.tags:
+            x, y = zip(*places, strict=True)
+            beside = max(x) < bounds[0] or min(x) > bounds[2]
+            if beside or max(y) < bounds[1] or min(y) > bounds[3]:
+                west, south = min(west, *x), min(south, *y)
+                east, north = max(east, *x), max(north, *y)
+    return west, south, east, north
+
+
+def _read_xml(path: Path, opened: Callable[[Path], Any]) -> OsmData:
     builder = _Builder(path)
     parser = ElementTree.XMLParser(target=builder)
     left = _LARGEST
     try:
-        with gzip.open(path) if compressed else path.open("rb") as file:
+        with opened(path) as file:
             while part := file.read(1 << 16):
                 left -= len(part)
                 if left < 0:
@@ -217,7 +265,10 @@ def _take(element: ElementTree.Element, data: OsmData) -> None:
         limits = [float(element.attrib[low]) for low in _LIMITS]
         if not _on_earth(*limits[:2]) or not _on_earth(*limits[2:]):
             raise ValueError(f"bounds {limits} are not on the earth")
-        data.bounds = (limits[0], limits[1], limits[2], limits[3])
+        west, south, east, north = data.bounds or limits  # editors write one for each download
+        data.bounds = (
+            min(west, limits[0]), min(south, limits[1]), max(east, limits[2]), max(north, limits[3])
+        )  # fmt: skip
         return
     if element.get("visible") == "false" or element.get("action") == "delete":
         return

@@ -94,7 +94,7 @@ def _walk(street: Street, sides: float) -> Line:
     """Return the line from kerb to kerb on which people cross a road beyond its stop line."""
     onwards = street.right[-1] - street.right[-2]
     onwards /= max(float(exact.hypot(*onwards)), 1e-9)
-    leftwards = np.array([-onwards[1], onwards[0]])
+    leftwards = street.inwards(onwards)
     width = float(exact.product(street.left[-1] - street.right[-1], leftwards))
     right = street.right[-1] + _WALKED * onwards
     return np.array([right, right + sides * width * leftwards])
@@ -105,9 +105,9 @@ def _along(chain: Sequence[Street], centre: str | None) -> tuple[list[Stripe], l
     middle, *dividers, kerb = (
         reduce(joined, parts) for parts in zip(*(link.lines for link in chain), strict=True)
     )
-    path, white, yellow = shapely.LineString(middle), [], []
+    path, white, yellow, side = shapely.LineString(middle), [], [], chain[0].side
     if centre is None:
-        edge = shapely.offset_curve(path, -_EDGE)
+        edge = shapely.offset_curve(path, -side * _EDGE)
         white += stripes(shapely.get_coordinates(edge), _EDGE_LINE)
     elif _comes_first(middle) and centre == "double yellow":
         beside = [shapely.offset_curve(path, side) for side in (-_DOUBLE, _DOUBLE)]
@@ -116,7 +116,7 @@ def _along(chain: Sequence[Street], centre: str | None) -> tuple[list[Stripe], l
         white += stripes(middle, _CENTRE_LINE)
     for divider in dividers:
         white += stripes(divider, _LINE, (_DASH, _GAP))
-    edge = shapely.offset_curve(shapely.LineString(kerb), _EDGE)
+    edge = shapely.offset_curve(shapely.LineString(kerb), side * _EDGE)
     return white + stripes(shapely.get_coordinates(edge), _EDGE_LINE), yellow
 
 
@@ -169,7 +169,7 @@ def _comes_first(line: Line) -> bool:
 def frame_of(street: Street) -> tuple[Line, Line, Line, float]:
     """Return the right end of the stop line, the directions onwards and left, and the width."""
     onwards = unit(street.right[-1] - street.right[-2])
-    leftwards = np.array([-onwards[1], onwards[0]])
+    leftwards = street.inwards(onwards)
     width = dot(street.left[-1] - street.right[-1], leftwards)
     return street.right[-1], onwards, leftwards, width
 
@@ -189,7 +189,9 @@ def _stop_line(street: Street) -> Stripe:
 def _reversed(street: Street) -> Street:
     """Return a street against its traffic, to mark its start like an end."""
     dividers = tuple(line[::-1] for line in street.dividers[::-1])
-    return Street(street.end, street.start, street.right[::-1], dividers, street.left[::-1])
+    return Street(
+        street.end, street.start, street.right[::-1], dividers, street.left[::-1], street.side
+    )
 
 
 def _zebra(street: Street, *, one_way: bool) -> list[Stripe]:

@@ -206,7 +206,7 @@ def _places(
                 shapely.get_coordinates(kerb.interpolate(s))[0] for s in (along, along + 0.1)
             )
             onwards = unit(there - here)
-            leftwards = np.array([-onwards[1], onwards[0]])
-            turn = float(exact.atan2(leftwards[1], leftwards[0]) - np.pi / 2)
-            made.append((here - rule.beyond_kerb * leftwards, turn))
+            inwards = street.inwards(onwards)
+            turn = float(exact.atan2(inwards[1], inwards[0]) - np.pi / 2)
+            made.append((here - rule.beyond_kerb * inwards, turn))
     return made

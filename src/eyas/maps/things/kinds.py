@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -182,7 +181,12 @@ THINGS: Mapping[str, Thing] = {
     "house": Thing(levels=_house, kind=ObjectClass.BUILDING, solid="cottage"),
     "traffic light": Thing(levels=_always(signals.signal_levels), kind=_POLE, solid="signal"),
     "dark traffic light": Thing(
-        levels=_always(partial(signals.signal_levels, amber=False)), kind=_POLE, solid="signal"
+        # The second variant is for where traffic keeps left.
+        levels=lambda kind, rng, season: signals.signal_levels(
+            amber=False, facing=-1.0 if kind.variant else 1.0
+        ),
+        kind=_POLE,
+        solid="signal",
     ),
     "street lamp": Thing(levels=_always(lamps.lamp_levels), kind=_POLE, solid="lamp", light=_LIGHT),
     **{

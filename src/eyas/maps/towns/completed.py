@@ -146,7 +146,9 @@ def completed(
         *(ThingKind(name=name, make="street tree", variant=k, chance="town trees")
           for k, name in enumerate(_TREES)),
         *plant_kinds("town gardens"), *STREET_KINDS[1:], *FURNITURE_KINDS, *CAR_KINDS,
-        ThingKind(name="traffic light", make="dark traffic light"),
+        ThingKind(
+            name="traffic light", make="dark traffic light", variant=int(network.left_hand)
+        ),
     )  # fmt: skip
     given = {kind.name for kind in plan.library}
     walks = town.crosswalks
@@ -295,7 +297,7 @@ def _usual_lamps(
     kept = SpacedPoints(_APART)
     for street in streets(network):
         kerb = shapely.LineString(street.right)
-        beside = shapely.offset_curve(kerb, -BEYOND_KERB)
+        beside = shapely.offset_curve(kerb, -street.side * BEYOND_KERB)
         start = _FROM_END + float(rng.uniform(0.0, 0.5 * _EVERY))
         along = np.arange(start, kerb.length - _FROM_END, _EVERY)
         if beside.geom_type != "LineString" or not len(along):

@@ -178,7 +178,7 @@ def _lines(street: Street, *, both: bool) -> list[Stripe]:
     if several:
         edges = [(street.right, _EDGE)] + ([] if both else [(street.left, -_EDGE)])
         for line, aside in edges:
-            moved = shapely.offset_curve(shapely.LineString(line), aside)
+            moved = shapely.offset_curve(shapely.LineString(line), street.side * aside)
             if moved.geom_type == "LineString" and not moved.is_empty:
                 made += stripes(shapely.get_coordinates(moved), _LINE)
     return made

@@ -7,9 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
+from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.traffic.config import TrafficConfig
+from eyas.engine.traffic.lamps import LaneMap
 from eyas.engine.traffic.recording import TrafficRecording
 from eyas.engine.traffic.recording_file import load
 from eyas.engine.traffic.smoothing import Tracks, runs, smooth
@@ -138,4 +141,24 @@ def _line(figures: ClassFigures) -> str:
         f"{figures.most} at most, {figures.mean:.1f} on average; "
         f"{figures.mean_speed:.1f} m/s on average, {figures.top_speed:.1f} m/s at most; "
         f"standing {100.0 * figures.standing:.1f} % of the time"
+    )
+
+
+def coverage(recording: TrafficRecording, network: RoadNetwork) -> str:
+    """Return a sentence about the vehicles of a recording, and on which streets they drive."""
+    every = max(round(0.5 * recording.rate), 1)  # who is on a lane for less is missed
+    here = recording.present[::every]
+    places = recording.position[::every][here]
+    lanes = LaneMap(network).at(places[:, 0], places[:, 1])
+    driven = np.zeros(len(network.edges), np.bool_)
+    driven[network.lane_edge[lanes[lanes >= 0]]] = True
+    rows = np.repeat(np.arange(len(network.lane_width)), np.diff(network.lane_first))
+    first = network.lane_index == 0
+    length = shapely.length(shapely.linestrings(network.lane_points, indices=rows))[first]
+    share = length[driven[network.lane_edge[first]]].sum() / length.sum()
+    most = int(here.sum(axis=1).max())
+    return (
+        f"traffic: up to {most} vehicles at a time ({here.sum(axis=1).mean():.0f} on average) "
+        f"for {recording.duration / 60.0:.0f} minutes, on {100.0 * share:.0f} % of the streets' "
+        "length, recorded with SUMO; other traffic on first use"
     )

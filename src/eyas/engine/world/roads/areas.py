@@ -29,13 +29,21 @@ Line = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Street:
-    """One direction of a road between two junctions. Lines run with the traffic, shape (K, 2)."""
+    """One direction of a road between two junctions. Lines run with the traffic, shape (K, 2).
+
+    Left and right are as where traffic keeps right; where it keeps left, everything is mirrored.
+    """
 
     start: str  # Node it leaves
     end: str  # Node it reaches
     left: Line  # Middle of the road, where the other direction begins [m]
     dividers: tuple[Line, ...]  # Between its lanes, the rightmost first [m]
     right: Line  # Kerb [m]
+    side: float = 1.0  # -1 where traffic keeps left, so that the kerb is on its left
+
+    def inwards(self, onwards: Line) -> Line:
+        """Return the direction from the kerb to the middle of the road, of one along it."""
+        return self.side * np.array([-onwards[1], onwards[0]])
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -49,7 +57,8 @@ def streets(network: RoadNetwork) -> list[Street]:
     lines = shapely.linestrings(
         network.lane_points, indices=np.repeat(np.arange(count), np.diff(network.lane_first))
     )
-    half = network.lane_width / 2
+    side = -1.0 if network.left_hand else 1.0
+    half = side * network.lane_width / 2
     left, right = _beside(lines, half), _beside(lines, -half)
     made = []
     for edge in range(len(network.edges)):
@@ -62,6 +71,7 @@ def streets(network: RoadNetwork) -> list[Street]:
                 left=left[lanes[-1]],
                 dividers=tuple(left[lane] for lane in lanes[:-1]),
                 right=right[lanes[0]],
+                side=side,
             )
         )
     return made
@@ -151,7 +161,10 @@ def _split(shape: shapely.Geometry, cell: float) -> list[shapely.Polygon]:
     squares = shapely.box(x, y, x + cell, y + cell)
     squares = squares[shapely.intersects(shape, squares)]
     cut = ~shapely.contains_properly(shape, squares)
-    squares[cut] = shapely.intersection(shape, squares[cut])
+    try:
+        squares[cut] = shapely.intersection(shape, squares[cut])
+    except shapely.GEOSException:  # outlines of real places may touch themselves once rounded
+        squares[cut] = shapely.intersection(shapely.make_valid(shape), squares[cut])
     return polygons_of(squares)
 
 

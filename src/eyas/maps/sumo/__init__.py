@@ -1,0 +1,1 @@
+"""Networks and traffic of SUMO that others have made."""
