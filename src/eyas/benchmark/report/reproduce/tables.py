@@ -145,8 +145,6 @@ _SEERS = ("hover", "sighted", "constant-velocity")
 _SHORT = (*_SEERS, "fast", "eyas")
 _KEPT = ("kept", "tsr", "losses_per_hour", "found_again")
 _ENDS: tuple[tuple[str, str, tuple[str, ...], tuple[str, ...]], ...] = (
-    ("long-10", "lasting", ("hover", "constant-velocity", "sighted", "fast", "eyas"), _KEPT),
-    ("gimbal", "lasting", ("hover", "gimbal-servo", "sighted", "eyas"), _KEPT),
     (
         "recover-wide",
         "recover",
@@ -154,25 +152,6 @@ _ENDS: tuple[tuple[str, str, tuple[str, ...], tuple[str, ...]], ...] = (
         ("recovered", "recovery_time", "followed_wrong", "tsr"),
     ),
     ("mission", "mission", ("hover", "sighted", "eyas-words"), ("score", *STAGES)),
-    ("corrupted", "corrupted", ("hover", "fast", "eyas"), ("tsr", "fall", "flawless", "seen")),
-    (
-        "crowd",
-        "crowd",
-        ("hover", "servo", "sighted", "eyas"),
-        ("kept_share", "identity_switches", "kept", "tsr"),
-    ),
-    (
-        "coat",
-        "crowd",
-        ("hover", "sighted", "eyas"),
-        ("kept_share", "kept_before", "kept_after", "tsr"),
-    ),
-    (
-        "pair",
-        "pair",
-        ("hover", "sighted", "relay", "eyas"),
-        ("team_seen", "alone_seen", "handed_over", "tsr"),
-    ),
 )
 """Tables with the floor, the ceiling and the best policy that ships, in one set of episodes."""
 
