@@ -54,7 +54,9 @@ def seconds(text: str, path: Path) -> float:
     try:
         parts = [float(part) for part in text.lstrip("-").split(":")]
         sign = -1.0 if text.startswith("-") else 1.0
-        return sign * sum(part * 60.0**k for k, part in enumerate(reversed(parts[-3:])))
+        units = (1.0, 60.0, 3600.0)
+        told = zip(reversed(parts[-3:]), units, strict=False)
+        return sign * sum(part * unit for part, unit in told)
     except ValueError:
         raise DataFileError(f"{path}: {text!r:.40} is not a time") from None
 
