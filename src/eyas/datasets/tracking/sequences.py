@@ -36,7 +36,10 @@ FILMS = frozenset({".mp4", ".avi", ".mov", ".mkv", ".webm", ".m4v", ".mpg", ".mp
 
 _DEEPEST = 7  # Folders below the one that is named; LaSOT in a folder of benchmarks has five
 _MOST_ENTRIES = 8_000_000  # TrackingNet has 14 million pictures in 12 parts
-_LARGEST = 1 << 28  # Largest file of a picture or of boxes [bytes]
+_LARGEST = 1 << 28  # Largest file of a picture [bytes]
+_LARGEST_TEXT = 1 << 26  # Largest file of boxes [bytes]; the densest of MOTChallenge has 30 MB
+_MOST_ROWS = 2_000_000  # Of a file of boxes
+_MOST_PIXELS = 100_000_000  # Of a frame of a film
 _MOST_FRAMES = 1_000_000  # Of one sequence
 _SHORTEST = 25  # Frames of an object of a file of many objects that make a sequence
 _INSIDE = ("img", "imgs", "img1", "color", "frames", "images", "rgb", "")
@@ -152,7 +155,13 @@ def _decoded(path: Path) -> Iterator[Any]:
     av = pyav("a film as a sequence")
     try:
         with av.open(str(path), mode="r") as container:
-            yield from container.decode(video=0)
+            stream = container.streams.video[0]
+            codec = stream.codec_context
+            if codec is None:
+                raise DataFileError(f"{path}: its codec is not known")
+            if codec.width * codec.height > _MOST_PIXELS:
+                raise DataFileError(f"{path}: has frames of {codec.width} x {codec.height}")
+            yield from container.decode(stream)
     except (av.error.FFmpegError, OSError, ValueError, IndexError) as error:
         reason = getattr(error, "strerror", None) or error
         raise DataFileError(f"{path}: cannot read: {reason}") from error
@@ -306,7 +315,7 @@ def _uav123_parts(texts: Sequence[Path]) -> dict[str, tuple[str, slice]]:
     parts = {}
     for path in texts:
         if path.name == "configSeqs.m":
-            content = read_limited(path, _LARGEST).decode("latin-1")
+            content = read_limited(path, _LARGEST_TEXT).decode("latin-1")
             for name, folder, first, last in re.findall(form, content):
                 parts[name] = (folder, slice(max(int(first[:9]) - 1, 0), int(last[:9])))
     return parts
@@ -362,11 +371,12 @@ def read_truth(path: Path) -> list[Truth]:
     Raises:
         DataFileError: It cannot be read; one line with the number of the row.
     """
-    rows = read_limited(path, _LARGEST).decode("utf-8-sig", "replace").splitlines()
+    rows = read_limited(path, _LARGEST_TEXT).decode("utf-8-sig", "replace").splitlines()
     while rows and not rows[-1].strip():
         rows.pop()
-    if not 0 < len(rows) <= _MOST_FRAMES * 8:
-        raise DataFileError(f"{path}: has no boxes")
+    if not 0 < len(rows) <= _MOST_ROWS:
+        more = f"more than {_MOST_ROWS:,} rows" if rows else "no boxes"
+        raise DataFileError(f"{path}: has {more}")
     values = [_numbers(row, f"{path}: line {number}") for number, row in enumerate(rows, 1)]
     width = max(map(len, values))
     if width >= 9 or path.name == "gt.txt":
@@ -469,7 +479,7 @@ def _shares_beside(path: Path, count: int) -> Floats:
 def _column(path: Path, count: int) -> Floats | None:
     if not path.is_file():
         return None
-    content = read_limited(path, _LARGEST).decode("utf-8", "replace")
+    content = read_limited(path, _LARGEST_TEXT).decode("utf-8", "replace")
     try:
         values = np.array([float(cell) for cell in re.split(r"[,\s]+", content.strip())])
     except ValueError:
