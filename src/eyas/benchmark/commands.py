@@ -326,11 +326,13 @@ def _policies_group() -> None: ...
 def list_policies(*, as_json: AsJson = False) -> None:
     """Print the policies for `eyas evaluate --policy`; as JSON, also what trained ones reach."""
     from eyas.benchmark.policies.shipped import card_of, shipped_names
-    from eyas.benchmark.policies.table import POLICIES
+    from eyas.benchmark.policies.table import ABOUT, POLICIES
     from eyas.benchmark.report.reproduce.tables import flown_of
 
     if as_json:
-        listed: list[dict[str, Any]] = [{"name": name} for name in POLICIES.names()]
+        listed: list[dict[str, Any]] = [
+            {"name": name, "about": ABOUT.get(name)} for name in POLICIES.names()
+        ]
         for name in shipped_names():
             figures = [
                 {"table": table, **one.model_dump(mode="json"), "build_id": build}
@@ -341,12 +343,11 @@ def list_policies(*, as_json: AsJson = False) -> None:
             listed.append({"name": name, **said, "figures": figures})
         typer.echo(json.dumps(listed, indent=1))
         return
-    for name in POLICIES.names():
-        typer.echo(f"{name} ({POLICIES.path(name) or 'built in'})")
     for name in shipped_names():
-        card = card_of(name)
-        typer.echo(f"{name}: {card.title}; {card.decisions:,} decisions of `{card.command}`")
-    typer.echo("What a trained policy reaches: eyas policies card NAME")
+        typer.echo(f"{name:<17} trained network: {card_of(name).title}")
+    for name in POLICIES.names():
+        typer.echo(f"{name:<17} {ABOUT.get(name, POLICIES.path(name))}")
+    typer.echo("What a trained network reaches, and how it was trained: eyas policies card NAME")
 
 
 @policies.command("adapt")

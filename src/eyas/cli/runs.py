@@ -29,7 +29,9 @@ from eyas.engine.terminal.options import (
     Weather,
     by_policy,
     chosen_file,
+    followed,
     gathered,
+    recorded,
     to_write,
 )
 from eyas.engine.terminal.stderr import say
@@ -56,6 +58,27 @@ def video(
             "hover-and-pan, search, exact, random, or package.module:Class; policy: as --policy.",
         ),
     ] = None,
+    frames: Annotated[
+        int | None, typer.Option("--frames", min=1, help="Frames of each drone's episode.")
+    ] = None,
+    episodes: Annotated[
+        int | None, typer.Option("--episodes", min=1, help="Episodes of each drone.")
+    ] = None,
+    drones: Annotated[
+        int | None, typer.Option("--drones", min=1, help="Drones that record together.")
+    ] = None,
+    size: Annotated[
+        str | None, typer.Option("--size", metavar="WxH", help="Size of the pictures, 640x480.")
+    ] = None,
+    fps: Annotated[float | None, typer.Option("--fps", help="Pictures a second.")] = None,
+    target: Annotated[
+        str | None,
+        typer.Option(
+            "--target",
+            help="What is followed: Pedestrian, BB-8, ..., see eyas targets list; or car, bus, "
+            "truck, trailer, motorcycle.",
+        ),
+    ] = None,
     resume: Resume = False,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
@@ -66,7 +89,9 @@ def video(
 
     if quiet:
         logging.getLogger("eyas").setLevel(logging.ERROR)
-    overrides = gathered(set_, map_name, weather, seed)
+    overrides = [] if target is None else followed(target)
+    overrides += gathered(set_, map_name, weather, seed)
+    overrides += recorded(frames=frames, episodes=episodes, drones=drones, size=size, fps=fps)
     if (camera == "policy") != (policy is not None) and camera is not None:
         raise ConfigError("--camera: 'policy' goes with --policy, and other flights without it")
     if camera is not None and policy is None:

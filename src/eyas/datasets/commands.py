@@ -10,12 +10,14 @@ import typer
 from eyas.engine.terminal.options import (
     SEVERAL,
     Out,
+    Overrides,
     Overwrite,
     Plots,
     Quiet,
     Ray,
     Resume,
     Workers,
+    apart,
     refuse_both,
     to_write,
 )
@@ -164,10 +166,33 @@ dataset_app = typer.Typer(no_args_is_help=True, help="Make data sets from recipe
 
 @dataset_app.command("make")
 def make_dataset(
-    recipe: Annotated[
-        str, typer.Argument(help="detect, follow, sot, or a JSON file.", show_default=False)
-    ],
-    out: Annotated[str, to_write("Folder to write to.")],
+    recipe: Annotated[str, typer.Argument(help="detect, follow, sot, or a JSON file.")] = "detect",
+    out: Annotated[str, to_write("Folder to write to.")] = "runs/dataset",
+    frames: Annotated[
+        int | None, typer.Option("--frames", min=1, help="Number of all frames.")
+    ] = None,
+    classes: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--classes",
+            metavar="NAMES",
+            help="What is followed: car, bus, truck, trailer, motorcycle, person; several with "
+            "commas. Vehicles other than cars: on the maps whose recorded traffic has them.",
+        ),
+    ] = None,
+    weather: Annotated[
+        list[str] | None,
+        typer.Option("--weather", metavar="NAMES", help="Its weathers; several with commas."),
+    ] = None,
+    map_name: Annotated[
+        list[str] | None,
+        typer.Option("--map", metavar="NAMES", help="Only these of its maps; with commas."),
+    ] = None,
+    formats: Annotated[
+        list[str] | None,
+        typer.Option("--format", metavar="NAMES", help="Further formats of eyas export."),
+    ] = None,
+    set_: Overrides = None,
     workers: Workers = None,
     sample: Annotated[
         bool, typer.Option("--sample", help="Make a hundredth, to look at it first.")
@@ -186,13 +211,31 @@ def make_dataset(
     quiet: Quiet = False,
 ) -> None:
     """Record a data set with all cores, export and describe it."""
+    from eyas.datasets.asked import Asked
     from eyas.datasets.making.make import Making
     from eyas.datasets.making.run import parsed_shard, run
 
     if quiet:
         logging.getLogger("eyas").setLevel(logging.ERROR)
     making = Making(workers=workers, resume=resume, quiet=quiet)
-    run(recipe, out, making, sample=sample, shard=parsed_shard(shard), ray=ray, trust=trust)
+    asked = Asked(
+        frames,
+        classes=apart(classes),
+        weathers=apart(weather),
+        maps=apart(map_name),
+        formats=apart(formats),
+        settings=tuple(set_ or ()),
+    )
+    run(
+        recipe,
+        out,
+        making,
+        asked=asked,
+        sample=sample,
+        shard=parsed_shard(shard),
+        ray=ray,
+        trust=trust,
+    )
 
 
 @dataset_app.command("merge")

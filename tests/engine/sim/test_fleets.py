@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from eyas.dat.settings.adapter import from_original
+from eyas.engine.core.config import updated
+from eyas.engine.core.errors import ConfigError
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.worlds import together
@@ -12,6 +14,7 @@ from eyas.engine.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.engine.targets.catalogue import KINDS, MODELS, kind_index
 from eyas.engine.task.config import StartConfig
 from eyas.engine.traffic.config import Mix, TrafficConfig, VehicleType
+from eyas.engine.traffic.library import CANONICAL_MIX
 
 LOOKS_LIKE = {
     VehicleType.BUS: (ObjectClass.BUS, (8.0, 20.0)),
@@ -95,3 +98,31 @@ def test_a_fixed_colour_is_seen_in_the_picture():
     assert red[0] > 1.5 * red[2]
     assert blue[2] > 1.5 * blue[0]
     assert abs(free[0] - free[2]) < 0.5 * (red[0] - red[2])
+
+
+def test_only_vehicles_of_the_classes_that_are_asked_for_are_followed():
+    config = SimConfig(
+        start=StartConfig(vehicles=(VehicleType.BUS, VehicleType.TRAILER)),
+        traffic=TrafficConfig(vehicle_type=CANONICAL_MIX),
+    )
+    simulation = build_simulation(config, together(6))  # four buses and two trailers
+    simulation.reset()
+    targets = simulation.snapshot.targets
+    kinds = sorted(MODELS[model].kind for model in targets.model.tolist())
+    assert kinds == ["bus"] * 4 + ["trailer"] * 2
+    assert len(set(targets.actor.tolist())) == 6
+
+
+def test_a_class_that_the_traffic_lacks_is_one_line():
+    config = SimConfig(start=StartConfig(vehicles=(VehicleType.BUS,)))
+    with pytest.raises(ConfigError) as caught:
+        build_simulation(config, together(1))
+    assert str(caught.value) == (
+        "start.vehicles: the traffic has no bus; allowed: passenger, or another "
+        "traffic.vehicle_type"
+    )
+
+
+def test_classes_of_vehicles_are_for_targets_that_are_vehicles():
+    with pytest.raises(ConfigError, match=r"^start\.vehicles: .* must be left out"):
+        updated(SimConfig(), {"target": "Pedestrian", "start": {"vehicles": ["bus"]}})

@@ -35,6 +35,31 @@ _BUILT_IN = {
     },
 }
 
+ABOUT: Mapping[str, str] = {
+    "random": "one of the seven actions, drawn anew every 32 ms",
+    "hover": "does nothing; the floor of every table",
+    "follow": "oracle: flies over the target, whose position it knows at all times",
+    "sighted": "oracle: knows where the target is while it is visible; then searches the roads",
+    "constant-velocity": "oracle: the same sight; a hidden target goes straight on",
+    **{
+        f"wait-{way}": f"oracle: the same sight; waits for a hidden target {way} m straight on"
+        for way in (20, 45, 90)
+    },
+    "road-graph": "oracle: the same sight; a hidden target goes on along the lanes",
+    "relay": "oracle of a team: sighted, which reports the target's place to the other drones",
+    "servo": "pixels: normalised correlation with the target's first picture",
+    "gimbal-servo": "pixels: as servo, and turns its camera up and down",
+    "attribute-servo": "words and pixels: follows the colour and kind that the words name",
+    "salient-servo": "pixels: follows what stands out most, whatever the words say",
+    "csrt": "box tracker of OpenCV: discriminative correlation filter (CSR-DCF)",
+    "kcf": "box tracker of OpenCV: kernelised correlation filter",
+    "mosse": "box tracker of OpenCV: MOSSE",
+    "medianflow": "box tracker of OpenCV: median flow",
+    "nano": "box tracker of OpenCV: NanoTrack, whose two networks you bring",
+    "stay": "box tracker that leaves the box where it was",
+}
+"""What each built-in policy is, in a line; an oracle knows the truth."""
+
 POLICIES: Registry[Callable[..., Any]] = Registry(
     "--policy",
     Callable,  # type: ignore[arg-type]  # a class to `isinstance`

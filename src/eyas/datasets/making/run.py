@@ -6,6 +6,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+from eyas.datasets.asked import Asked
 from eyas.datasets.layout import RECIPE_FILE, Plan
 from eyas.datasets.making.make import Making, make, report
 from eyas.datasets.recipe import Recipe, read_recipe
@@ -20,6 +21,7 @@ def run(
     out: str,
     making: Making,
     *,
+    asked: Asked = Asked(),  # noqa: B008  # never changes
     sample: bool = False,
     # Number of the shard, from 1, and of all shards; None: all of it
     shard: tuple[int, int] | None = None,
@@ -39,6 +41,8 @@ def run(
         recipe, source = read_recipe(named, trust=trust), named
     else:
         recipe, source = validated(Recipe, named), RECIPE_FILE
+    if asked != Asked():
+        recipe, source = asked.of(recipe), RECIPE_FILE
     plan = Plan.of(recipe, source, sample=sample, shard=shard)
     for part in plan.parts():  # refuses a recipe that cannot be met, before anything begins
         check_flight(part.config)

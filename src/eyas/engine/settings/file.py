@@ -3,7 +3,7 @@
 import json
 import logging
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -52,9 +52,7 @@ def load_settings(
     config = (base or EyasConfig()) if path is None else _loaded(path)
     pairs = [parsed_override(override) for override in overrides]
     for capital, group in groupby(pairs, key=lambda pair: pair[0][0][:1].isupper()):
-        changes: Nested = {}
-        for keys, value in group:
-            _put(changes, keys, value)
+        changes = _nested(group)
         if capital:
             config = spoken(f"--set {next(iter(changes))}").changed(config, changes, path)
         else:
@@ -191,6 +189,22 @@ def parsed_override(override: str) -> tuple[list[str], Any]:
     if len(keys) == 1 and group and group.named_by and isinstance(value, str):
         keys.append(group.named_by)
     return keys, value
+
+
+def nested_overrides(overrides: Sequence[str]) -> Nested:
+    """Return changes of settings, each `key=value`, as nested dictionaries; a later one wins.
+
+    Raises:
+        ConfigError: One is of another form.
+    """
+    return _nested(map(parsed_override, overrides))
+
+
+def _nested(pairs: Iterable[tuple[list[str], Any]]) -> Nested:
+    changes: Nested = {}
+    for keys, value in pairs:
+        _put(changes, keys, value)
+    return changes
 
 
 def _texts(value: object) -> Iterator[str]:

@@ -89,4 +89,6 @@ class SimConfig(Config):
         extras = self.extras or ()
         if followed and any(extra.is_traffic for extra in extras):
             raise ValueError("extras must not hold SUMO_VEHICLE (see traffic.max_vehicles)")
+        if self.start.vehicles is not None and not followed:
+            raise ValueError("start.vehicles must be left out: the target is no vehicle")
         return self

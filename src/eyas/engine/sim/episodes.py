@@ -24,9 +24,10 @@ from eyas.engine.sim.light import LightChanges
 from eyas.engine.sim.starts import FreeStarts
 from eyas.engine.sim.worlds import Worlds
 from eyas.engine.state.snapshot import Snapshot
-from eyas.engine.targets.catalogue import MODELS, kind_of
+from eyas.engine.targets.catalogue import MODELS, kind_index, kind_of
+from eyas.engine.traffic.config import VehicleType
 from eyas.engine.traffic.replay import check_time
-from eyas.engine.traffic.source import TrafficSource
+from eyas.engine.traffic.source import Stays, TrafficSource
 from eyas.lanes import PackedBundle, interpreted
 from eyas.lanes.pcg64 import STATE
 
@@ -78,6 +79,7 @@ class Episodes:
         self._episodes, self._targets = snapshot.episodes, snapshot.targets
         self.models = _model_table()
         self._rules = _rules(config, int(traffic.duration / PHYSICS_STEP))
+        self._may_follow = _followed_kinds(config, traffic)
         self._sides = _sides(config, worlds)
         self._draw = PackedBundle(
             EpisodeSampling(
@@ -101,7 +103,12 @@ class Episodes:
 
     def _bind(self) -> None:
         """Bind the sampling of episodes to what is known of the traffic."""
-        self._drawn = sample_episodes.bind(self._draw, self._traffic.stays(), self._call)
+        stays = self._traffic.stays()
+        if self._may_follow is not None:
+            kept = self._may_follow[stays.actor]
+            actor, enters, leaves, known = stays
+            stays = Stays(actor[kept], enters[kept], leaves[kept], known)
+        self._drawn = sample_episodes.bind(self._draw, stays, self._call)
 
     def reseed(self, seed: int) -> None:
         """Begin the sequence of episodes of another seed."""
@@ -259,6 +266,25 @@ def _rules(config: SimConfig, last_tick: int) -> SamplingRules:
         last_tick=last_tick,
         steps=steps,
     )
+
+
+def _followed_kinds(config: SimConfig, traffic: TrafficSource) -> NDArray[np.bool_] | None:
+    """Return whether each actor is of a class that may be followed, shape (A,); None: all may.
+
+    Raises:
+        ConfigError: The traffic has no vehicle of these classes.
+    """
+    classes = config.start.vehicles
+    if classes is None:
+        return None
+    mine = np.isin(traffic.motion.kind, [kind_index(name) for name in classes])
+    if not mine.any():
+        there = [name for name in VehicleType if kind_index(name) in traffic.motion.kind]
+        raise ConfigError(
+            f"start.vehicles: the traffic has no {' or '.join(classes)}; allowed: "
+            f"{', '.join(there)}, or another traffic.vehicle_type"
+        )
+    return mine
 
 
 def _model_table() -> ModelTable:

@@ -6,6 +6,7 @@ from typing import Annotated
 from pydantic import AfterValidator, Field
 
 from eyas.engine.core.config import Config
+from eyas.engine.core.errors import UnknownNameError
 from eyas.engine.core.variation import Variation, within
 from eyas.engine.traffic.config import VehicleType
 
@@ -45,6 +46,22 @@ _COMMON = {
     "van": "passenger",
 }
 """Classes of vehicles by common names."""
+
+
+def vehicle_class(name: str, where: str = "--classes") -> VehicleType:
+    """Return the class of vehicles of a common name: car, bus, lorry, motorcycle, ...
+
+    Args:
+        name: The name, in any case.
+        where: The option or setting that an error names.
+
+    Raises:
+        UnknownNameError: No class has it.
+    """
+    kind = _COMMON.get(name.lower(), name.lower())
+    if kind not in _CLASSES:
+        raise UnknownNameError(where, name, ["car", *VehicleType])
+    return VehicleType(kind)
 
 
 Offset = Annotated[Variation, AfterValidator(within(-1e4, 1e4))]

@@ -9,6 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 from eyas.engine.core.config import Config
 from eyas.engine.core.named_code import NAMES_CODE
 from eyas.engine.core.variation import Uniform, Variation, within
+from eyas.engine.traffic.config import VehicleType
 
 Positive = Annotated[float, Field(gt=0, le=1e9)]
 Height = Annotated[float, Field(ge=-1e6, le=1e6)]
@@ -71,6 +72,9 @@ class StartConfig(Config):
     case."""
     warm_up_steps: Annotated[int, Field(ge=0, le=5_000_000)] = 310
     """2 ms steps of traffic before the trackers start."""
+    vehicles: Annotated[tuple[VehicleType, ...], Field(min_length=1)] | None = None
+    """Classes of the vehicles that may be followed, among those of `traffic.vehicle_type`; None:
+    all."""
 
 
 class RewardConfig(Config):

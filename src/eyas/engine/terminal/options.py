@@ -4,12 +4,13 @@ An option whose help differs from command to command is a function of the help, 
 """
 
 import json
+import re
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.errors import ConfigError, UnknownNameError
 from eyas.engine.settings.preset import PRESETS
 
 ConfigFile = Annotated[
@@ -94,6 +95,11 @@ def by_policy(what: str) -> Any:  # noqa: ANN401  # Typer's
     return typer.Option("--policy", help=f"{what}{POLICIES}, a file, or package.module:name.")
 
 
+def apart(names: list[str] | None) -> tuple[str, ...]:
+    """Return the names of an option that takes several, given with commas or several times."""
+    return tuple(name for text in names or () for name in text.split(",") if name)
+
+
 def refuse_both(*, resume: bool, overwrite: bool) -> None:
     """Refuse to continue and to replace at once.
 
@@ -133,3 +139,61 @@ def gathered(
         f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None
     ]
     return [*(overrides or []), *from_options]
+
+
+def recorded(
+    *,
+    frames: int | None,
+    episodes: int | None,
+    drones: int | None,
+    size: str | None,
+    fps: float | None,
+) -> list[str]:
+    """Return what a recording holds, by its options, as changes of settings, `key=value`.
+
+    Raises:
+        ConfigError: A size is of another form than 640x480.
+    """
+    if episodes is not None and frames is None:
+        frames = 150  # 6 s at the usual 25 Hz, as long as a recording without either
+    changes: dict[str, object] = {
+        "video.episode_frames": frames,
+        "video.episodes": episodes,
+        "video.channels": drones,
+        "video.fps": fps,
+    }
+    if size is not None:
+        found = re.fullmatch(r"(\d{1,5})x(\d{1,5})", size)
+        if not found:
+            raise ConfigError(f"--size: {size!r} is not allowed: WxH in pixels, such as 640x480")
+        changes |= {"camera.width": int(found[1]), "camera.height": int(found[2])}
+    return [f"{key}={json.dumps(value)}" for key, value in changes.items() if value is not None]
+
+
+def followed(name: str) -> list[str]:
+    """Return the changes of settings, `key=value`, that follow a kind of target or a class of
+    vehicles; vehicles other than cars are those of a mixed fleet.
+
+    Raises:
+        UnknownNameError: There is no such target.
+    """
+    from eyas.engine.targets.config import TargetName, vehicle_class
+    from eyas.engine.traffic.config import VehicleType
+
+    if name in list(TargetName):
+        return [f"target={name}"]
+    if not TargetName.elsewhere(name):
+        raise UnknownNameError("--target", name, [*TargetName, *VehicleType])
+    kind = vehicle_class(name)
+    changes = ["target=SUMO_VEHICLE", f"start.vehicles={json.dumps([kind])}"]
+    if kind is VehicleType.PASSENGER:
+        return changes
+    from eyas.engine.settings.video import VideoConfig
+    from eyas.engine.traffic.config import TrafficConfig
+    from eyas.engine.traffic.fleet import vehicle_types
+    from eyas.engine.traffic.library import CANONICAL_MIX
+
+    fleet = vehicle_types(TrafficConfig(vehicle_type=CANONICAL_MIX))
+    drones = min(VideoConfig().channels, fleet.count(kind))
+    changes += [f"traffic.vehicle_type={CANONICAL_MIX.model_dump_json()}"]
+    return [*changes, f"video.channels={drones}"]  # one for each

@@ -122,6 +122,19 @@ def find_file(
     return _new(graph, wanted, duration, known, reason)
 
 
+def is_shipped(graph: RoadGraph, config: TrafficConfig, shipped: Iterable[Traversable]) -> bool:
+    """Return whether a recording of some traffic comes with a map, so that SUMO is not needed.
+
+    Args:
+        graph: Roads to drive on.
+        config: Settings of the traffic.
+        shipped: Files of the recordings that come with the map.
+    """
+    wanted = resolved(config, CANONICAL_SEED if config.seed is None else config.seed)
+    found = (RecordingFile.read(file).outline().provenance for file in shipped)
+    return any(_fits(origin, graph, wanted) for origin in found)
+
+
 def _named(path: Path, graph: RoadGraph, config: TrafficConfig) -> RecordingFile:
     """Return the file of a recording that the user has named."""
     named = RecordingFile.read(path)
