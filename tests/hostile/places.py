@@ -83,6 +83,7 @@ READERS = {
     "engine.custom.gltf_file:_draco": "draco",
     "robotics.urdf_file:read_urdf": "urdf",
     "engine.custom.trajectory:read_table": "trajectory",
+    "maps.traffic.tables:_opened": "vehicle table",
     "robotics.tracks.geo:_unzipped": "a.kmz",
     "robotics.tracks.geo:_xml": "a.gpx",
     "robotics.tracks.geo:read_geojson": "a.geojson",
@@ -159,6 +160,7 @@ _CODE = "a file that is code, and is read only if its user says so"
 _SOCKET = "a socket, tested in the servers' part"
 OWN = {
     "lanes.text_index:TextIndex.json_of": _PACKAGE,
+    "maps.traffic.tables:forms": _PACKAGE,
     "maps.osm.driving_side:usual_side": _PACKAGE,
     "dat.shim:_listen_early": "settings, of which one number is looked for; they are read later",
     "engine.core.identity.build:_digest_of": _PACKAGE,

@@ -431,6 +431,28 @@ def _trajectory(folder, chance, most):
     return of_bytes(path, read, chance, most, *with_words(TRACK, ABSURD_WORDS))
 
 
+VEHICLES = "track_id,timestamp_ms,agent_type,x,y,psi_rad,length,width\n" + "".join(
+    f"{car},{100 * k},car,{8 * car + k},{car},0.1,4.5,1.8\n" for car in (1, 2) for k in range(5)
+)
+
+
+@row("vehicle table")
+def _vehicle_table(folder, chance, most):
+    from eyas.engine.world.maps import MAPS
+    from eyas.maps.traffic import tables
+    from eyas.maps.traffic.tracks_traffic import Put, traffic_of
+
+    limited(tables)
+    path, graph = folder / "tracks.csv", MAPS.get("citystreet").roads(0)
+    path.write_text(VEHICLES)
+
+    def read() -> None:
+        tables.form_of(path)
+        traffic_of(tables.read_tracks(path), graph, Put(), path)
+
+    return of_bytes(path, read, chance, most, *with_words(VEHICLES, ABSURD_WORDS))
+
+
 TRACKS = {
     "a.gpx": "<gpx><trk><trkseg>"
     + "".join(

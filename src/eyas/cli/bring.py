@@ -138,7 +138,10 @@ def _net(path: Path) -> Brought:
 
 def _track(path: Path) -> Brought:
     from eyas.engine.custom.tracks import tracks_in
+    from eyas.maps.traffic.tables import form_of
 
+    if path.suffix == ".csv" and form_of(path):
+        return _vehicles(path)
     tracks = tracks_in(path)
     points = sum(len(track.place) for track in tracks)
     first = tracks[0]
@@ -165,6 +168,23 @@ def _track(path: Path) -> Brought:
         + (" --set video.flight_at=[0,0,0]" if at else ""),
     )
     return Brought(path, what, tuple(notes), uses)
+
+
+def _vehicles(path: Path) -> Brought:
+    from eyas.maps.traffic.tables import read_tracks
+
+    table = read_tracks(path)
+    last = max(float(vehicle.time[-1]) for vehicle in table.vehicles)
+    count = _many(len(table.vehicles), "recorded vehicle")
+    notes = [f"left out: {count} {what}" for what, count in table.left_out.items()]
+    if table.origin is None:
+        notes.append("it lies nowhere on earth: --at says where on the map")
+    quoted, made = _quoted(path), _quoted(path.with_suffix(".traffic.npz"))
+    uses = (
+        f"eyas traffic import {quoted} --map MAP",
+        f"eyas video --map MAP --set traffic.recording={made}",
+    )
+    return Brought(path, f"{count} of a table {table.form}, {last:.0f} s", tuple(notes), uses)
 
 
 def _shape(path: Path) -> Brought:

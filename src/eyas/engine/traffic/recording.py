@@ -24,7 +24,7 @@ class Provenance:
     duration: float  # [s]
     warm_up: float  # Simulated time before the recording began [s]
     options: tuple[str, ...]  # SUMO's options
-    sumo_version: str
+    sumo_version: str  # Empty: SUMO has not driven them
     eyas_version: str
     cover: str = ""
     """Digest of the stretches of lanes in which drivers hide; empty where they don't."""

@@ -41,7 +41,7 @@ class TrafficFacts:
     map_seed: int
     roads: str  # Hash of the road graph
     traffic: dict[str, Any]  # Demand, and the settings that are not the default ones
-    sumo_version: str
+    sumo_version: str  # Empty: it is of recorded vehicles
     eyas_version: str
     duration: float  # [s]
     rate: float  # Samples per second [Hz]
@@ -91,7 +91,8 @@ def lines_of(said: TrafficFacts) -> list[str]:
     return [
         f"map: {said.map}, seed {said.map_seed} (roads {said.roads[:8]})",
         " ".join([f"traffic: demand={said.traffic['demand']}", *settings]),
-        f"made by: SUMO {said.sumo_version}, Eyas {said.eyas_version}",
+        f"made by: {f'SUMO {said.sumo_version}, ' if said.sumo_version else ''}"
+        f"Eyas {said.eyas_version}",
         f"duration: {said.duration:g} s at {said.rate:g} Hz, "
         f"after {said.warm_up:g} s that are left out",
         *(f"{name}: {_line(figures)}" for name, figures in said.vehicles.items()),

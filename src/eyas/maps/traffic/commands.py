@@ -1,10 +1,11 @@
 """`eyas traffic`."""
 
 import json
+import math
 import re
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -22,7 +23,12 @@ from eyas.engine.terminal.options import (
     to_write,
 )
 
-app = typer.Typer(help="Record traffic with SUMO.", no_args_is_help=True)
+if TYPE_CHECKING:
+    from eyas.maps.traffic.tracks_traffic import Put
+
+app = typer.Typer(
+    help="Record traffic with SUMO, or make it of recorded vehicles.", no_args_is_help=True
+)
 
 _MOST = 10_000  # Largest number of seeds at once
 
@@ -94,6 +100,64 @@ def record(
         )
 
 
+@app.command("import")
+def import_tracks(
+    table: Annotated[
+        Path,
+        typer.Argument(
+            help="Table of recorded vehicles (CSV): highD, inD, rounD, exiD, INTERACTION, NGSIM, "
+            "VisDrone, or any other with --columns."
+        ),
+    ],
+    map_name: MapName = None,
+    map_seed: Annotated[int, typer.Option("--map-seed", help="Seed of the map.")] = 0,
+    columns: Annotated[
+        Path | None, typer.Option("--columns", help="JSON file that says what its columns are.")
+    ] = None,
+    unit: Annotated[
+        float | None,
+        typer.Option("--unit", help="Metres of its unit of length, such as of a pixel."),
+    ] = None,
+    at: Annotated[
+        str | None,
+        typer.Option(
+            "--at",
+            metavar="X,Y,TURN",
+            help="Where its middle is put on the map [m], and by how many degrees it is turned; "
+            "by default where its metadata say, or in the middle.",
+        ),
+    ] = None,
+    out: Annotated[Path | None, to_write("File to write; by default TABLE.traffic.npz.")] = None,
+    overwrite: Overwrite = False,
+) -> None:
+    """Make traffic of recorded vehicles; use it with --set traffic.recording=FILE."""
+    from eyas.engine.traffic.recording_file import save
+    from eyas.engine.world.maps import MAPS
+    from eyas.engine.world.maps.place import projection_of
+    from eyas.maps.traffic.about import about, lines_of
+    from eyas.maps.traffic.recording import check_free
+    from eyas.maps.traffic.tables import read_columns, read_tracks
+    from eyas.maps.traffic.tracks_traffic import put_by_place, traffic_of
+
+    if unit is not None and not 0.0 < unit <= 1e4:
+        raise ConfigError(f"--unit: {unit:g} is not allowed: above 0, up to 10000")
+    recipe = MAPS.get(map_name or "citystreet")
+    path = out or table.with_suffix(".traffic.npz")
+    check_free(path, overwrite=overwrite)
+    found = read_tracks(table, None if columns is None else read_columns(columns), unit)
+    known = put_by_place(found, projection_of(recipe)) if at is None else None
+    put = known or _put(at or "0,0,0")
+    recording = traffic_of(found, recipe.roads(map_seed), put, table)
+    save(recording, path)
+    where = "where its metadata place it" if known else f"at {at or '0,0,0'}"
+    typer.echo(f"{path}: {len(found.vehicles)} vehicles of a table {found.form}, {where}")
+    for what, count in found.left_out.items():
+        typer.echo(f"  left out: {count} {what}")
+    for line in lines_of(about(path)):
+        typer.echo(f"  {line}")
+    typer.echo(f"  eyas video --map {map_name or 'citystreet'} --set traffic.recording={path}")
+
+
 @app.command()
 def info(
     file: Annotated[Path, typer.Argument(help="A recording of traffic.")],
@@ -109,6 +173,19 @@ def info(
         return
     for line in lines_of(said):
         typer.echo(line)
+
+
+def _put(text: str) -> "Put":
+    """Return the place of `X,Y,TURN`, in metres and degrees."""
+    from eyas.maps.traffic.tracks_traffic import Put
+
+    try:
+        x, y, turn = map(float, text.split(","))
+    except ValueError:
+        x = y = turn = math.nan
+    if not (abs(x) <= 1e5 and abs(y) <= 1e5 and abs(turn) <= 360.0):
+        raise ConfigError(f"--at: {text!r} is not allowed: X,Y,TURN in metres and degrees")
+    return Put(x, y, math.radians(turn))
 
 
 def _numbers(text: str) -> tuple[int, ...]:

@@ -179,7 +179,7 @@ def run(
     for seed in seeds or (known,):
         name = Path(f"{graph.map_name}-{seed}-{_fleet_name(config)}.npz")
         target = (path / name if seeds else path) if path is not None else name
-        _check_free(target, overwrite=overwrite)  # before SUMO runs for minutes
+        check_free(target, overwrite=overwrite)  # before SUMO runs for minutes
         jobs.append(RecordingJob(world, config, duration, seed, target))
     with sumo_progress() as progress:
         for path_made, what in record_all(jobs, workers, progress):
@@ -197,7 +197,12 @@ def _make_folder(path: Path) -> None:
         raise OutputError(f"{path}: cannot make the folder: {error.strerror}") from None
 
 
-def _check_free(path: Path, *, overwrite: bool) -> None:
+def check_free(path: Path, *, overwrite: bool) -> None:
+    """Refuse a file that exists, unless it may be replaced, or that cannot be written.
+
+    Raises:
+        OutputError: It cannot be written.
+    """
     if path.is_dir():
         raise OutputError(f"{path}: is a folder, not a file")
     if path.exists() and not overwrite:
