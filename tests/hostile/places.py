@@ -84,6 +84,7 @@ READERS = {
     "robotics.urdf_file:read_urdf": "urdf",
     "engine.custom.trajectory:read_table": "trajectory",
     "maps.traffic.tables:_opened": "vehicle table",
+    "maps.traffic.tables:read_columns": "vehicle columns",
     "robotics.tracks.geo:_unzipped": "a.kmz",
     "robotics.tracks.geo:_xml": "a.gpx",
     "robotics.tracks.geo:read_geojson": "a.geojson",

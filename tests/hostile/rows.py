@@ -453,6 +453,15 @@ def _vehicle_table(folder, chance, most):
     return of_bytes(path, read, chance, most, *with_words(VEHICLES, ABSURD_WORDS))
 
 
+@row("vehicle columns")
+def _vehicle_columns(folder, chance, most):
+    from eyas.maps.traffic.tables import read_columns
+
+    path = folder / "columns.json"
+    path.write_text('{"id": "who", "time": "t", "x": "x", "y": "y", "classes": {"VAN": "car"}}')
+    return of_json(path, lambda: read_columns(path), chance, most)
+
+
 TRACKS = {
     "a.gpx": "<gpx><trk><trkseg>"
     + "".join(
