@@ -135,8 +135,11 @@ def read_columns(path: Path) -> Columns:
         DataFileError: The file cannot be read.
         ConfigError: A key or a value is wrong.
     """
+    content = read_json(path, 1 << 20)
+    if not isinstance(content, dict):
+        raise DataFileError(f"{path}: not a JSON object")
     try:
-        return validated(Columns, read_json(path, 1 << 20))
+        return validated(Columns, content)
     except ConfigError as error:
         raise ConfigError(f"{path}: {error}") from None
 
