@@ -2,6 +2,7 @@
 
 import bz2
 import shutil
+import subprocess
 from collections import Counter
 from itertools import pairwise
 from types import SimpleNamespace
@@ -20,6 +21,8 @@ from eyas.engine.traffic.demand import RoadLinks, roomy_loops, ways_through
 from eyas.engine.traffic.net_file import SumoNet
 from eyas.engine.traffic.recording_file import load
 from eyas.engine.traffic.sumo import options
+from eyas.engine.traffic.sumo_install import sumo_binary, sumo_environment
+from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE, PLAN_FILE
 from eyas.engine.world.projection import Projection
 from eyas.engine.world.roads.areas import streets
 from eyas.engine.world.street.signals import pole_at
@@ -31,8 +34,10 @@ from eyas.maps.osm import importing
 from eyas.maps.osm.driving_side import tagged_side, usual_side
 from eyas.maps.osm.reader import covered, read_osm
 from eyas.maps.osm.streets import street_file
+from eyas.maps.plan.file import read_plan
 from eyas.maps.sumo import importing as sumo_importing
 from eyas.maps.sumo.files import SumoFiles, demand_of, moved, place_of
+from eyas.maps.sumo.projection import projection_of_net
 
 LEFT = {
     "London": (-0.13, 51.5), "Dublin": (-6.26, 53.35), "Tokyo": (139.69, 35.69),
@@ -410,7 +415,7 @@ def test_a_network_is_moved_and_nothing_else_is_changed():
     place = place_of(xml.encode(), "x")
     assert place.middle == (150.0, 7.0)
     assert place.size == (100.0, 0.0)
-    assert place.degrees == pytest.approx((6.91, 50.91))
+    assert place.projection is not None
     text = moved(xml.encode(), (-150.0, -7.0), "x").decode()
     for part in ('shape="-50.000,0.000 50.000,0.000,3.5"', 'x="-50.000" y="0.000"',
                  'netOffset="-145.000,-1.000"', 'length="9"'):  # fmt: skip
@@ -441,3 +446,70 @@ def test_vehicles_begin_with_the_first_of_them(tmp_path):
     path.write_text("<routes/>")
     with pytest.raises(DataFileError, match="has no vehicles"):
         demand_of(SumoFiles(tmp_path, (path,)), lambda what: None)
+
+
+@pytest.mark.parametrize(
+    ("words", "place", "metres"),  # Metres by pyproj
+    [
+        ("+proj=utm +zone=30 +ellps=WGS84", (-0.1, 51.5), (701277.66513, 5709417.12485)),
+        ("+proj=utm +zone=56 +south", (151.2, -33.87), (333510.65008, 6250800.24118)),
+        (
+            "+proj=tmerc +lat_0=49 +lon_0=-2 +k=0.9996012717 +x_0=400000 +y_0=-100000",
+            (-0.1, 51.5),
+            (531878.95744, 179685.29785),
+        ),
+    ],
+)
+def test_a_network_lies_where_its_projection_says(words, place, metres):
+    lon, lat = place
+    location = {
+        "projParameter": words,
+        "netOffset": f"{-metres[0]:.2f},{-metres[1]:.2f}",
+        "origBoundary": f"{lon - 0.01},{lat - 0.01},{lon + 0.01},{lat + 0.01}",
+    }
+    projection = projection_of_net(location, (0.0, 0.0))
+    assert projection is not None
+    np.testing.assert_allclose(projection.metres(place), [[0.0, 0.0]], atol=0.02)
+    np.testing.assert_allclose(projection.degrees((0.0, 0.0)), [place], atol=3e-7)
+    for unknown in ("!", "+proj=lcc +lat_1=33", "", "+proj=utm"):
+        assert projection_of_net(location | {"projParameter": unknown}, (0.0, 0.0)) is None
+
+
+@pytest.mark.sumo
+@pytest.mark.slow
+def test_a_network_of_sumo_has_the_buildings_of_openstreetmap(places, tmp_path):
+    house = "".join(
+        node(100 + k, -0.1 + dx, 51.5 + dy)
+        for k, (dx, dy) in enumerate(((4e-4, 3e-4), (8e-4, 3e-4), (8e-4, 6e-4), (4e-4, 6e-4)))
+    ) + way(50, 100, 101, 102, 103, 100, building="yes", building__levels="3")  # fmt: skip
+    town = grid(-0.1, 51.5) + house
+    there = places("with-house", town)
+    osm = file(tmp_path, town)
+    # As osmWebWizard makes it: in UTM, whose north is 2 degrees beside the true one here.
+    net = tmp_path / "city.net.xml"
+    command = [sumo_binary("netconvert"), "--osm-files", osm, "-o", net, "--proj.utm", "--lefthand"]
+    subprocess.run(command, check=True, capture_output=True, env=sumo_environment())
+    how = {"buildings": osm, "record": False}
+    report = sumo_importing.run(net, "back", out=tmp_path / "back", **how)
+    assert report.buildings == 1
+    assert "© OpenStreetMap contributors" in report.lines()
+    assert (tmp_path / "back" / ATTRIBUTION_FILE).read_text()
+    apart = [_gaps(folder) for folder in (there.folder, tmp_path / "back")]
+    np.testing.assert_allclose(*apart, atol=0.3)
+    with pytest.raises(
+        DataFileError, match=r"of another place: the network is about latitude 51\.5"
+    ):
+        sumo_importing.run(
+            net, "c", out=tmp_path / "c", buildings=file(tmp_path, grid(2.0, 48.0), name="b.osm")
+        )
+
+
+def _gaps(folder):
+    """Return how far each corner of the only house is from the nearest middle of a lane [m]."""
+    (house,) = read_plan(folder / PLAN_FILE).survey.houses
+    network = load_network(str(folder), 0)
+    lanes = shapely.MultiLineString([
+        network.lane_points[a:b] for a, b in pairwise(network.lane_first)
+    ])  # fmt: skip
+    corners = shapely.get_coordinates(house.shape)[:4]
+    return sorted(lanes.distance(shapely.Point(*corner)) for corner in corners)

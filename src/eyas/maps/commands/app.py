@@ -72,6 +72,14 @@ def import_map(  # noqa: PLR0913  # its options
         Path | None, typer.Option("--sumocfg", help="SUMO: what names their files, .sumocfg.")
     ] = None,
     buildings: Annotated[bool, typer.Option(help="SUMO: make houses along the streets.")] = True,
+    around: Annotated[
+        Path | None,
+        typer.Option(
+            "--buildings-of",
+            metavar="FILE",
+            help="SUMO: a file of OpenStreetMap of the same place, with its buildings and grounds.",
+        ),
+    ] = None,
     traffic: Annotated[bool, typer.Option(help="Record the traffic now, not on first use.")] = True,
     overwrite: Overwrite = False,
 ) -> None:
@@ -83,7 +91,11 @@ def import_map(  # noqa: PLR0913  # its options
     if sumo.is_sumo(file):
         given = {"--bbox": bbox is not None, "--drive-on": drive_on is not None}
     else:
-        given = {"--routes": bool(routes), "--sumocfg": sumocfg is not None}
+        given = {
+            "--routes": bool(routes),
+            "--sumocfg": sumocfg is not None,
+            "--buildings-of": around is not None,
+        }
     for option, used in given.items():
         if used:
             raise ConfigError(f"{option}: is not for {file.name!r}")
@@ -94,7 +106,7 @@ def import_map(  # noqa: PLR0913  # its options
             routes or (),
             sumocfg,
             out=out,
-            buildings=buildings,
+            buildings=around or buildings,
             record=traffic,
             overwrite=overwrite,
         )

@@ -157,7 +157,7 @@ def run(
     data = read_osm(path)
     place = _place(data, bounds, str(path))
     streets = _streets(data, place, _side(data, place, drive_on, report), report)
-    survey = _survey(data, place, streets, report)
+    survey = survey_of(data, place, streets, report)
     origin = Origin(
         name, f"Imported from OpenStreetMap: {path.name}", path.name,
         round((place.projection.longitude + 180.0) % 360.0 - 180.0, 7),
@@ -198,7 +198,7 @@ def check_free(folder: Path, name: str, *, overwrite: bool, own: bool) -> None:
         raise OutputError(f"{folder}: is there already; replace it with --overwrite")
 
 
-class _Place(NamedTuple):
+class Place(NamedTuple):
     """Position of the map on earth."""
 
     source: str  # name of the file, for messages
@@ -209,7 +209,7 @@ class _Place(NamedTuple):
     size: tuple[float, float]  # of the floor [m]
 
 
-def _place(data: OsmData, bounds: Bounds | None, source: str) -> _Place:
+def _place(data: OsmData, bounds: Bounds | None, source: str) -> Place:
     """Return the area to import, in degrees and in metres around its middle."""
     west, south, east, north = limits = covered(data, bounds, source)
     middle = round((west + east) / 2, 7)
@@ -231,7 +231,7 @@ def _place(data: OsmData, bounds: Bounds | None, source: str) -> _Place:
     x, y = np.abs(shapely.get_coordinates(extent)).max(axis=0)
     size = 2 * float(np.ceil(x + _MARGIN)), 2 * float(np.ceil(y + _MARGIN))
     meridian = middle if max(-west, east) > _SEAM else 0.0
-    return _Place(source, limits, meridian, projection, extent, size)
+    return Place(source, limits, meridian, projection, extent, size)
 
 
 def _middle_of(data: OsmData, limits: Bounds) -> str:
@@ -251,7 +251,7 @@ def _middle_of(data: OsmData, limits: Bounds) -> str:
     return ",".join(f"{each:.4f}" for each in (x - dx, y - dy, x + dx, y + dy))
 
 
-def _side(data: OsmData, place: _Place, asked: str | None, report: Report) -> str:
+def _side(data: OsmData, place: Place, asked: str | None, report: Report) -> str:
     """Return the side of the road on which one drives."""
     tagged, usual = (
         tagged_side(data),
@@ -271,7 +271,7 @@ class Streets(NamedTuple):
     network: RoadNetwork
 
 
-def _streets(data: OsmData, place: _Place, side: str, report: Report) -> Streets:
+def _streets(data: OsmData, place: Place, side: str, report: Report) -> Streets:
     """Return the streets for cars within the area."""
     left_hand = side == "left"
     cut = street_file(
@@ -296,8 +296,8 @@ def _streets(data: OsmData, place: _Place, side: str, report: Report) -> Streets
     return Streets(graph, net, network)
 
 
-def _survey(data: OsmData, place: _Place, streets: Streets, report: Report) -> Survey:
-    """Return everything but the streets, and count what is not told."""
+def survey_of(data: OsmData, place: Place, streets: Streets, report: Report) -> Survey:
+    """Return everything but the streets, and count in the report what is guessed or left out."""
 
     def odd(key: str) -> None:
         report.odd[key] += 1

@@ -11,6 +11,7 @@ from eyas.engine.core.decoding import gunzipped
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
 from eyas.engine.traffic.net_file import SumoNet
+from eyas.maps.sumo.projection import NetProjection, projection_of_net
 
 _LARGEST = 512 << 20  # Largest file, packed and unpacked [bytes]
 
@@ -66,7 +67,7 @@ class Place(NamedTuple):
 
     middle: tuple[float, float]  # In the file's own metres
     size: tuple[float, float]  # Extent of its streets [m]
-    degrees: tuple[float, float] | None  # Longitude and latitude of its middle; None: nowhere
+    projection: NetProjection | None  # To metres about its middle; None: it lies nowhere known
 
 
 def place_of(xml: bytes, source: str) -> Place:
@@ -79,11 +80,9 @@ def place_of(xml: bytes, source: str) -> Place:
     try:
         lanes = [lane.points for edge in net.edges if edge.function is None for lane in edge.lanes]
         points = np.concatenate([line for line in lanes if len(line)] or [np.zeros((0, 2))])
-        corners = next(_corners(one) for one in ElementTree.fromstring(xml).iter("location"))
+        location = next(ElementTree.fromstring(xml).iter("location"), None)
     except (ValueError, IndexError) as error:
         raise net.error(f"a shape: {error}") from None
-    except StopIteration:
-        corners = None
     if not len(points):
         raise DataFileError(f"{source}: has no streets")
     if not (np.abs(points) <= _FARTHEST).all():  # also what is no number: it is not
@@ -91,15 +90,8 @@ def place_of(xml: bytes, source: str) -> Place:
     low, high = points.min(axis=0), points.max(axis=0)
     x, y = np.round(0.5 * (low + high), 2).tolist()
     width, height = (high - low).tolist()
-    return Place((x, y), (width, height), corners)
-
-
-def _corners(location: ElementTree.Element) -> tuple[float, float] | None:
-    """Return the middle of the corners of what a network was made of, if these are in degrees."""
-    west, south, east, north = (float(v) for v in location.get("origBoundary", "").split(","))
-    if location.get("projParameter", "!") == "!" or not -180.0 <= west < east <= 180.0:
-        return None
-    return (0.5 * (west + east), 0.5 * (south + north)) if -85 < south < north < 85 else None
+    projection = None if location is None else projection_of_net(location.attrib, (x, y))
+    return Place((x, y), (width, height), projection)
 
 
 def moved(xml: bytes, by: tuple[float, float], source: str) -> bytes:

@@ -28,9 +28,20 @@ from eyas.engine.world.roads.areas import corridors, polygons_of, streets
 from eyas.lanes import exact
 from eyas.maps.files import ROADS_FILE, Origin, maps_folder, roads_in
 from eyas.maps.osm.features import House, Survey
-from eyas.maps.osm.importing import Report, Streets, check_free, name_of, recorded, write_map
+from eyas.maps.osm.importing import (
+    ATTRIBUTION,
+    Report,
+    Streets,
+    check_free,
+    name_of,
+    recorded,
+    survey_of,
+    write_map,
+)
+from eyas.maps.osm.importing import Place as Area
+from eyas.maps.osm.reader import read_osm
 from eyas.maps.plan.plan import MapPlan, Roads
-from eyas.maps.sumo.files import SumoFiles, configured, demand_of, moved, place_of
+from eyas.maps.sumo.files import Place, SumoFiles, configured, demand_of, moved, place_of
 from eyas.maps.sumo.traffic import record_others
 from eyas.maps.traffic.about import coverage
 
@@ -59,7 +70,7 @@ def run(
     config: Path | None = None,
     *,
     out: Path | None = None,
-    buildings: bool = True,
+    buildings: bool | Path = True,
     record: bool = True,
     overwrite: bool = False,
 ) -> Report:
@@ -72,7 +83,8 @@ def run(
             traffic.
         config: The configuration; None: there is none beside `path`.
         out: Folder of the map; None: below the user's folder of maps.
-        buildings: Whether houses are made along the streets, of which the files say nothing.
+        buildings: Whether houses are made along the streets, of which the files say nothing; or a
+            file of OpenStreetMap, whose buildings, trees and grounds are those of the map.
         record: Whether usual traffic is recorded now; otherwise on first use.
         overwrite: Whether a map of that name is replaced.
 
@@ -104,12 +116,16 @@ def run(
     network = road_network(net, graph_hash(graph))
     made = Streets(graph, net, network)
     width, height = (2.0 * float(np.ceil(0.5 * side + _MARGIN)) for side in place.size)
-    longitude, latitude = place.degrees or (None, None)
+    longitude = latitude = None
+    if place.projection is not None:
+        longitude, latitude = np.round(place.projection.degrees((0.0, 0.0))[0], 7).tolist()
     title, source = f"Imported from SUMO: {net_path.name}", net_path.name
     origin = Origin(name, title, source, longitude, latitude, (width, height))
-    survey = _survey(made)
-    if buildings:
-        survey.houses = _houses(network, survey)
+    if isinstance(buildings, Path):
+        survey = _surveyed(buildings, place, made, report)
+    else:
+        survey = _survey(made)
+        survey.houses = _houses(network, survey) if buildings else []
     report.size, report.lanes, report.signals = origin.size, len(network.lane_width), len(
         net.programs
     )  # fmt: skip
@@ -118,7 +134,7 @@ def run(
     plan = MapPlan(
         name=name, title=title, size=origin.size, roads=Roads(file=ROADS_FILE), survey=survey
     )
-    write_map(folder, made, plan, origin, "")
+    write_map(folder, made, plan, origin, ATTRIBUTION if isinstance(buildings, Path) else "")
     if out is None:
         register_map(name)
     if demand:
@@ -132,6 +148,35 @@ def run(
         report.traffic = recorded(made, folder, record=record)
     report.seconds = time.monotonic() - begun
     return report
+
+
+def _surveyed(path: Path, place: Place, made: Streets, report: Report) -> Survey:
+    """Return what a file of OpenStreetMap knows of a network's place besides its streets."""
+    if place.projection is None:
+        raise DataFileError(
+            f"{path}: the network does not say where on earth it lies, by UTM or a transverse "
+            "Mercator; allowed: --buildings, which makes houses along the streets"
+        )
+    data = read_osm(path)
+    x, y = (0.5 * side + _MARGIN for side in place.size)
+    corners = place.projection.degrees([(-x, -y), (x, -y), (x, y), (-x, y)])
+    (west, south), (east, north) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+    near = [west < x < east and south < y < north for x, y in data.places.values()]
+    if not any(near):
+        raise DataFileError(
+            f"{path}: of another place: the network is about latitude {0.5 * (south + north):.4f}, "
+            f"longitude {0.5 * (west + east):.4f}"
+        )
+    area = Area(
+        str(path),
+        (west, south, east, north),
+        0.0,
+        place.projection,
+        shapely.box(-x, -y, x, y),
+        (2.0 * x, 2.0 * y),
+    )
+    report.notices = ("© OpenStreetMap contributors",)
+    return survey_of(data, area, made, report)
 
 
 def _survey(made: Streets) -> Survey:
