@@ -160,3 +160,14 @@ def test_stop_lines_of_imported_streets_lie_before_the_ends_of_their_lanes(netwo
         assert (way.length - ends).max() == pytest.approx(0.6, abs=0.05)
         across = np.linalg.norm(stop[1] - stop[0])
         assert 2.0 < across < 7.0
+
+
+def test_paint_of_imported_streets_is_white_or_yellow_as_the_country_has_it(network):
+    roads = road_area(network)
+    white, yellow = town_paint(network, roads, [], (), middles="white")
+    assert not yellow
+    rest, between = town_paint(network, roads, [], (), middles="yellow")
+    assert between
+    assert sorted(line.middle.tobytes() for line in [*rest, *between]) == sorted(
+        line.middle.tobytes() for line in white
+    )

@@ -32,6 +32,7 @@ from eyas.maps.files import MAP_FILES
 from eyas.maps.formats.roads import write_sumo
 from eyas.maps.osm import importing
 from eyas.maps.osm.driving_side import tagged_side, usual_side
+from eyas.maps.osm.paint_colours import usual_paint
 from eyas.maps.osm.reader import covered, read_osm
 from eyas.maps.osm.streets import street_file
 from eyas.maps.plan.file import read_plan
@@ -62,6 +63,45 @@ RIGHT = {
 def test_cities_are_driven_in_as_they_are():
     assert {name for name, place in LEFT.items() if usual_side(*place) == "left"} == set(LEFT)
     assert {name for name, place in RIGHT.items() if usual_side(*place) == "right"} == set(RIGHT)
+
+
+def test_paint_has_the_colours_of_its_country():
+    swiss = {
+        "Zürich": (8.54, 47.37), "Geneva": (6.14, 46.2), "Basel": (7.59, 47.55),
+        "Lugano": (8.95, 46.0), "Chur": (9.53, 46.85), "Morges": (6.5, 46.51),
+        "Vaduz": (9.52, 47.14),
+    }  # fmt: skip
+    beside = {
+        "Milan": (9.19, 45.46), "Annecy": (6.13, 45.9), "Konstanz": (9.17, 47.67),
+        "Mulhouse": (7.34, 47.75), "Chamonix": (6.87, 45.92), "Innsbruck": (11.4, 47.27),
+    }  # fmt: skip
+    yellow = {
+        "New York": (-74.0, 40.71), "Los Angeles": (-118.2, 34.05), "São Paulo": (-46.6, -23.5),
+        "Honolulu": (-157.86, 21.3), "Anchorage": (-149.9, 61.2), "Beijing": (116.4, 39.9),
+        "Shanghai": (121.5, 31.2), "Shenzhen": (114.06, 22.55), "Zhuhai": (113.55, 22.27),
+        "Ürümqi": (87.6, 43.8), "Seoul": (126.98, 37.57), "Busan": (129.07, 35.18),
+    }  # fmt: skip
+    for name, place in swiss.items():
+        assert usual_paint(*place) == ("yellow", "white"), name
+    for name, place in (beside | LEFT).items():
+        if place[0] > -20.0:
+            assert usual_paint(*place) == ("white", "white"), name
+    for name, place in yellow.items():
+        assert usual_paint(*place) == ("white", "yellow"), name
+    for name in ("Calais", "Paris", "Munich", "Manila", "Vientiane", "Kabul", "Vladivostok"):
+        assert usual_paint(*RIGHT[name]) == ("white", "white"), name
+
+
+@pytest.mark.sumo
+@pytest.mark.slow
+def test_a_town_is_painted_in_the_colours_of_its_country(london, places):
+    for place, crossings, middles in (
+        (london, "white", "white"),
+        (places("morges", grid(6.5, 46.51)), "yellow", "white"),
+        (places("queens", grid(-73.8, 40.7)), "white", "yellow"),
+    ):
+        known = read_plan(place.folder / PLAN_FILE).survey
+        assert (known.crossing_paint, known.middle_paint) == (crossings, middles)
 
 
 def node(number, lon, lat, **tags):

@@ -14,6 +14,9 @@ Point = tuple[float, float]
 Roof = Literal["flat", "gabled", "hipped", "pyramidal", "skillion", "dome"]
 """Shape of a roof."""
 
+PaintColour = Literal["white", "yellow"]
+"""Colour of paint on roads."""
+
 AREA_KINDS = (
     "water", "parking", "plaza", "path", "pitch", "playground", "sand", "rail", "park", "forest",
     "scrub", "grass", "farmland", "soil", "industrial", "commercial", "residential",
@@ -79,3 +82,7 @@ class Survey:
     """Width of others along all streets [m]; 0: there are none."""
     signals: tuple[str, ...] = ()
     """Edges of the network that end at a traffic light."""
+    crossing_paint: PaintColour = "yellow"
+    """Colour of the bars of crossings."""
+    middle_paint: PaintColour = "white"
+    """Colour of the line between the two directions of a street."""

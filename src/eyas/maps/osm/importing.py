@@ -54,6 +54,7 @@ from eyas.maps.osm.driving_side import tagged_side, usual_side
 from eyas.maps.osm.features import Survey
 from eyas.maps.osm.houses import buildings_beyond, houses_of
 from eyas.maps.osm.land import add_land
+from eyas.maps.osm.paint_colours import usual_paint
 from eyas.maps.osm.reader import Bounds, OsmData, covered, no_streets, read_osm
 from eyas.maps.osm.rings import OsmShapes
 from eyas.maps.osm.streets import is_street, osm_network, street_file
@@ -305,7 +306,8 @@ def survey_of(data: OsmData, place: Place, streets: Streets, report: Report) -> 
     shapes = OsmShapes(
         data, place.projection, place.extent, lambda what: report.broken.update([what])
     )
-    survey = Survey(houses=houses_of(shapes, odd))
+    crossings, middles = usual_paint(place.projection.longitude, place.projection.latitude)
+    survey = Survey(houses=houses_of(shapes, odd), crossing_paint=crossings, middle_paint=middles)
     report.left_out["buildings beyond the area"] += buildings_beyond(data, place.limits)
     report.left_out += Counter()  # drops what there was none of
     add_land(survey, shapes, odd, stream(0, "imported tree rows"))

@@ -27,7 +27,7 @@ from eyas.engine.world.maps.recipe import TRAFFIC_FILE
 from eyas.engine.world.roads.areas import corridors, polygons_of, streets
 from eyas.lanes import exact
 from eyas.maps.files import ROADS_FILE, Origin, maps_folder, roads_in
-from eyas.maps.osm.features import House, Survey
+from eyas.maps.osm.features import House, PaintColour, Survey
 from eyas.maps.osm.importing import (
     ATTRIBUTION,
     Report,
@@ -39,6 +39,7 @@ from eyas.maps.osm.importing import (
     write_map,
 )
 from eyas.maps.osm.importing import Place as Area
+from eyas.maps.osm.paint_colours import usual_paint
 from eyas.maps.osm.reader import read_osm
 from eyas.maps.plan.plan import MapPlan, Roads
 from eyas.maps.sumo.files import Place, SumoFiles, configured, demand_of, moved, place_of
@@ -124,7 +125,7 @@ def run(
     if isinstance(buildings, Path):
         survey = _surveyed(buildings, place, made, report)
     else:
-        survey = _survey(made)
+        survey = _survey(made, usual_paint(longitude or 0.0, latitude or 0.0))
         survey.houses = _houses(network, survey) if buildings else []
     report.size, report.lanes, report.signals = origin.size, len(network.lane_width), len(
         net.programs
@@ -179,13 +180,15 @@ def _surveyed(path: Path, place: Place, made: Streets, report: Report) -> Survey
     return survey_of(data, area, made, report)
 
 
-def _survey(made: Streets) -> Survey:
+def _survey(made: Streets, paint: tuple[PaintColour, PaintColour]) -> Survey:
     """Return what the network knows besides its lanes."""
     pavement = shapely.MultiPolygon(polygons_of(snapped(pavement_area(made.net))))
     return Survey(
         pavement=pavement,
         sidewalks=_SIDEWALK if pavement.is_empty else 0.0,
         signals=signalled_edges(made.net),
+        crossing_paint=paint[0],
+        middle_paint=paint[1],
         lit_crossings={
             name: shapely.LineString(line) for name, line in crossing_lines(made.net).items()
         },

@@ -215,7 +215,14 @@ def _ground(
 ) -> list[Layer]:
     """Return streets with their paint, pavements, water and all other ground."""
     rng = stream(seed, "town ground")
-    white, yellow = town_paint(network, town.roads, town.crosswalks, set(known.signals))
+    white, yellow = town_paint(
+        network,
+        town.roads,
+        town.crosswalks,
+        set(known.signals),
+        known.crossing_paint,
+        known.middle_paint,
+    )
     paint = Paint(rule="none", lines=tuple(white), bars=tuple(yellow), shapes=tuple(bays))
     parking = ground.asphalt(town.ground["parking"], light=True)
     made: list[Layer] = [

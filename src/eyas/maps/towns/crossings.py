@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.world.build.millimetres import dot, length, rounded, unit
 from eyas.engine.world.roads.areas import Street, streets
-from eyas.maps.osm.features import Survey
+from eyas.maps.osm.features import PaintColour, Survey
 from eyas.maps.roads.markings import frame_of, placed
 from eyas.maps.roads.painting import Stripe, stripes
 
@@ -141,11 +141,21 @@ def _same(line: Line, other: Line) -> bool:
 
 def town_paint(
     network: RoadNetwork,
-    roads: shapely.Geometry,  # Their asphalt [m]
+    roads: shapely.Geometry,
     crosswalks: Sequence[Crosswalk],
     signalled: Collection[str],
+    crossings: PaintColour = "yellow",
+    middles: PaintColour = "white",
 ) -> tuple[list[Stripe], list[Stripe]]:
-    """Return the white lines of all streets, and the yellow bars of their crossings.
+    """Return the white and the yellow paint of all streets and their crossings.
+
+    Args:
+        network: The streets.
+        roads: Their asphalt [m].
+        crosswalks: Their crossings.
+        signalled: Edges that end at a traffic light.
+        crossings: Colour of the bars of crossings.
+        middles: Colour of the line between the two directions of a street.
 
     Real streets have ends, one-way parts and lanes that begin and end, so every street is painted
     by itself.
@@ -154,24 +164,28 @@ def town_paint(
     ways = {(street.start, street.end) for street in every}
     speeds = {int(edge): network.lane_speed[lane] for lane, edge in enumerate(network.lane_edge)}
     lines: list[Stripe] = []
+    between: list[Stripe] = []
     for index, street in enumerate(every):
         if len(street.right) < 2 or len(street.left) < 2 or speeds[index] < _SLOWEST:
             continue
         both = (street.end, street.start) in ways
         if shapely.LineString(street.right).length > _SHORTEST:
             lines += _lines(street, both=both)
+            between += _middle(street) if both else []
         if network.edges[index] in signalled:
             lines.append(_stop_line(street))
     zebras = _zebras(roads, crosswalks)
-    return _cut(lines, zebras), [bar for bars in zebras for bar in bars]
+    bars = [bar for several in zebras for bar in several]
+    white, yellow = _cut(lines, zebras), list[Stripe]()
+    (yellow if middles == "yellow" else white).extend(_cut(between, zebras))
+    (yellow if crossings == "yellow" else white).extend(bars)
+    return white, yellow
 
 
 def _lines(street: Street, *, both: bool) -> list[Stripe]:
-    """Return the lines along a street; one of two directions draws the line between them."""
+    """Return the lines along a street, but that between its two directions."""
     made: list[Stripe] = []
     several = len(street.dividers) > 0
-    if both and tuple(street.left[0]) < tuple(street.left[-1]):
-        made += stripes(street.left, _LINE, None if several else _DASH)
     for divider in street.dividers:
         if len(divider) >= 2:
             made += stripes(divider, _LINE, _DASH)
@@ -182,6 +196,13 @@ def _lines(street: Street, *, both: bool) -> list[Stripe]:
             if moved.geom_type == "LineString" and not moved.is_empty:
                 made += stripes(shapely.get_coordinates(moved), _LINE)
     return made
+
+
+def _middle(street: Street) -> list[Stripe]:
+    """Return the line between two directions, which one of them draws."""
+    if tuple(street.left[0]) >= tuple(street.left[-1]):
+        return []
+    return stripes(street.left, _LINE, None if len(street.dividers) else _DASH)
 
 
 def _stop_line(street: Street) -> Stripe:
