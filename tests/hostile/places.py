@@ -91,6 +91,7 @@ READERS = {
     "robotics.tracks.geo:read_gpx": "a.gpx",
     "robotics.tracks.geo:read_kml": "a.kml",
     "robotics.tracks.logs:read_bin": "a.bin",
+    "robotics.tracks.logs:read_tlog": "a.tlog",
     "robotics.tracks.logs:read_ulg": "a.ulg",
     "robotics.tracks.missions:read_plan": "a.plan",
     "robotics.tracks.missions:read_waypoints": "a.waypoints",

@@ -511,11 +511,11 @@ def zipped(name: bytes, content: bytes) -> bytes:
 
 def _add_tracks() -> None:
     sys.path.insert(0, str(Path(__file__).parents[1] / "kit"))
-    from flight_logs import ardupilot_flight, px4_flight
+    from flight_logs import ardupilot_flight, px4_flight, telemetry
 
     made = {name: text.encode() for name, text in TRACKS.items()}
     made["a.kmz"] = zipped(b"doc.kml", made["a.kml"])
-    made |= {"a.ulg": px4_flight(), "a.bin": ardupilot_flight()}
+    made |= {"a.ulg": px4_flight(), "a.bin": ardupilot_flight(), "a.tlog": telemetry()}
     ROWS.update({name: _of_tracks(name, content) for name, content in made.items()})
 
 

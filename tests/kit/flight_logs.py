@@ -72,3 +72,25 @@ def ardupilot_flight(count: int = 20) -> bytes:
             "ATT": ("Qc", "TimeUS,Yaw", turn),
         }
     )
+
+
+def telemetry(count: int = 20, version: int = 2) -> bytes:
+    """Return what a ground station keeps of the same flight, in packets of MAVLink 1 or 2, between
+    heartbeats.
+    """
+
+    def packet(kind: int, payload: bytes) -> bytes:
+        if version == 1:
+            head = bytes([0xFE, len(payload), 0, 7, 1, kind])
+        else:
+            payload = payload.rstrip(b"\0") or b"\0"
+            head = bytes([0xFD, len(payload), 0, 0, 0, 7, 1, kind, 0, 0])
+        return head + payload + b"\x12\x34"
+
+    log = b""
+    for k in range(count):
+        when = struct.pack(">Q", 1_777_000_000_000_000 + 100_000 * k)
+        place = (100 * k, round(1e7 * (51.5 + 9e-6 * k)), -1_000_000, 20_000 + 1000 * k)
+        log += when + packet(0, struct.pack("<IBBBBB", 0, 2, 3, 81, 4, version))
+        log += when + packet(33, struct.pack("<IiiiihhhH", *place, 0, 0, 1000, 0, 9000))
+    return log

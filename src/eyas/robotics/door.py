@@ -20,6 +20,7 @@ HOUSE = House(
             ".txt": "eyas.robotics.tracks.poses:read_poses",
             ".ulg": "eyas.robotics.tracks.logs:read_ulg",
             ".bin": "eyas.robotics.tracks.logs:read_bin",
+            ".tlog": "eyas.robotics.tracks.logs:read_tlog",
             ".plan": "eyas.robotics.tracks.missions:read_plan",
             ".waypoints": "eyas.robotics.tracks.missions:read_waypoints",
         },

@@ -4,6 +4,7 @@ import io
 import json
 import math
 import zipfile
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ import pytest
 from eyas.engine.core.errors import EyasError
 from eyas.engine.custom.tracks import Placement, on_map, tracks_in
 from eyas.engine.world.projection import Projection
-from tests.kit.flight_logs import ardupilot_flight, px4_flight
+from tests.kit.flight_logs import ardupilot_flight, px4_flight, telemetry
 
 LONDON = Projection(-0.1, 51.5)
 
@@ -115,7 +116,12 @@ def test_each_kind_goes_ten_metres_a_second_to_the_north(tmp_path, name):
 
 @pytest.mark.parametrize(
     ("name", "content", "yaw"),
-    [("a.ulg", px4_flight, math.pi / 2), ("a.bin", ardupilot_flight, 0.0)],
+    [
+        ("a.ulg", px4_flight, math.pi / 2),
+        ("a.bin", ardupilot_flight, 0.0),
+        ("a.tlog", telemetry, 0.0),
+        ("old.tlog", partial(telemetry, version=1), 0.0),
+    ],
 )
 def test_logs_of_flights_have_places_times_and_headings(tmp_path, name, content, yaw):
     path = tmp_path / name
@@ -177,6 +183,7 @@ def test_a_track_elsewhere_or_on_a_map_that_is_nowhere_is_one_line(tmp_path):
         ("a.tum", "1 2 3 4 5 6 7 nine\n", "is not a pose"),
         ("a.ulg", b"ULog", "not a log of PX4"),
         ("a.bin", b"\xa3\x95", "has no POS and no GPS"),
+        ("a.tlog", telemetry(1), "has no GLOBAL_POSITION_INT with a place"),
         ("a.csv", "lat,lon\n1,2\n", "no column 't'"),
         ("a.csv", "t,x,east\n0,1,2\n", "no column 'y'"),
         ("a.csv", "t,x,east,y\n0,1,2,3\n", "two columns are 'x'"),

@@ -1,8 +1,9 @@
-"""Logs of flight controllers: PX4's `.ulg` and ArduPilot's `.bin`.
+"""Logs of flight controllers and ground stations: PX4's `.ulg`, ArduPilot's `.bin`, `.tlog`.
 
 ULog: docs.px4.io, "ULog File Format"; a header of 16 bytes, then messages of a length, a kind and a
 content. DataFlash: ardupilot.org, "Log message format"; packets that begin with A3 95 and their
-kind, whose lengths and columns other packets describe. Only the few messages are read that say
+kind, whose lengths and columns other packets describe. Telemetry: mavlink.io, "Serialization";
+each packet after its time, as eight bytes. Only the few messages are read that say
 where the vehicle was, and not by pyulog and pymavlink, which never end on some damaged files. A log
 that is cut is read up to there.
 """
@@ -126,6 +127,68 @@ def read_bin(path: Path) -> list[Track]:
                 place = np.stack([table[column] for column in ("Lng", "Lat", "Alt")], axis=1)
                 return [_flight(path, table["time"], place, yaw, on_earth=True)]
     raise DataFileError(f"{path}: has no POS and no GPS with a fix")
+
+
+_POSITION = 33  # Number of GLOBAL_POSITION_INT, and what is in it by mavlink.io, "common"
+_FIELDS = np.dtype([
+    ("boot", "<u4"), ("lat", "<i4"), ("lon", "<i4"), ("alt", "<i4"), ("above", "<i4"),
+    ("v", "<i2", (3,)), ("heading", "<u2"),
+])  # fmt: skip
+_UNKNOWN = 65535  # Heading that is not known
+
+
+def read_tlog(path: Path) -> list[Track]:
+    """Return the flights of telemetry that a ground station has kept, one for each vehicle."""
+    content = read_limited(path, _LARGEST)
+    times: dict[int, list[int]] = {}
+    rows: dict[int, list[bytes]] = {}
+    at = 0
+    while at + 20 <= len(content):
+        length, system, kind, payload = _packet(content, at + 8)
+        if length == 0:
+            at += 1
+            continue
+        if kind == _POSITION:
+            times.setdefault(system, []).append(int.from_bytes(content[at : at + 8], "big"))
+            # Version 2 leaves zeros at the end out.
+            rows.setdefault(system, []).append(payload.ljust(_FIELDS.itemsize, b"\0"))
+        at += 8 + length
+    found = []
+    for system, several in rows.items():
+        table = np.frombuffer(b"".join(row[: _FIELDS.itemsize] for row in several), _FIELDS)
+        place = np.stack([1e-7 * table["lon"], 1e-7 * table["lat"], 1e-3 * table["alt"]], axis=1)
+        time = 1e-6 * np.array(times[system], np.float64)
+        fixed = (table["lon"] != 0) | (table["lat"] != 0)
+        if fixed.sum() > 1:
+            known = fixed & (table["heading"] != _UNKNOWN)
+            yaw = time[known], np.radians(90.0 - 0.01 * table["heading"][known])
+            found.append(_flight(path, time[fixed], place[fixed], yaw, on_earth=True))
+    if not found:
+        raise DataFileError(f"{path}: has no GLOBAL_POSITION_INT with a place")
+    return found
+
+
+def _packet(content: bytes, at: int) -> tuple[int, int, int, bytes]:
+    """Return length, system, number and payload of the packet at a place; length 0: there is none.
+
+    Checksums are not looked at: they need the definition of every message.
+    """
+    head = content[at : at + 10]
+    if len(head) < 8 or head[0] not in (0xFD, 0xFE):
+        return 0, 0, 0, b""
+    if head[0] == 0xFE:
+        begin, system, kind = 6, head[3], head[5]
+    elif len(head) == 10 and not head[2] & ~1:
+        begin, system, kind = 10, head[5], int.from_bytes(head[7:10], "little")
+    else:
+        return 0, 0, 0, b""
+    signed = 13 if head[0] == 0xFD and head[2] & 1 else 0
+    length = begin + head[1] + 2 + signed
+    # The next packet, after its time, tells whether this is one.
+    after = content[at + length + 8 : at + length + 9]
+    if at + length > len(content) or (after and after[0] not in (0xFD, 0xFE)):
+        return 0, 0, 0, b""
+    return length, system, kind, content[at + begin : at + begin + head[1]]
 
 
 def _dataflash_tables(content: bytes, wanted: set[str]) -> dict[str, Table]:
