@@ -110,6 +110,8 @@ READERS = {
     "engine.recordings.recording:_table": "dataset",
     "benchmark.plan.latency:_read": "latencies",
     "benchmark.policies.sandbox:receive": "policy messages",
+    "benchmark.policies.chat_agent:open_chat": "chat file",
+    "benchmark.policies.chat_agent:text_of": "chat reply",
     "benchmark.policies.foreign:adapt": "onnx",
     "benchmark.policies.onnx:open_session": "onnx",
     "benchmark.policies.tracker.metadata:metadata": "onnx",

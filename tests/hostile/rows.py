@@ -453,6 +453,32 @@ def _vehicle_table(folder, chance, most):
     return of_bytes(path, read, chance, most, *with_words(VEHICLES, ABSURD_WORDS))
 
 
+@row("chat file")
+def _chat_file(folder, chance, most):
+    from eyas.benchmark.policies.chat_agent import open_chat
+
+    path = folder / "agent.json"
+    path.write_text('{"url": "http://localhost:1/v1", "model": "m", "rate": 1, "size": [64, 48]}')
+    return of_json(path, lambda: open_chat(path, {}), chance, most)
+
+
+@row("chat reply")
+def _chat_reply(folder, chance, most):
+    from eyas.benchmark.policies.chat_agent import answer_in, text_of
+
+    path = folder / "reply.json"
+    said = {"role": "assistant", "content": 'So: {"waypoints": [[1, 2], [3, 4, 0.5]], "step": 1}'}
+    path.write_text(json.dumps({"choices": [{"message": said}]}))
+
+    def read() -> None:
+        try:
+            answer_in(text_of(path.read_bytes(), "http://localhost"), 0.5, (64, 48))
+        except ConnectionError as error:
+            raise EyasError(str(error)) from None
+
+    return of_json(path, read, chance, most)
+
+
 @row("vehicle columns")
 def _vehicle_columns(folder, chance, most):
     from eyas.maps.traffic.tables import read_columns

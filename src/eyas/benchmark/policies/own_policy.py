@@ -135,7 +135,8 @@ def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
         path: `package.module:name` of a function of one observation; of a function whose attribute
             `batched` is true, of observations with a leading axis; of a class with `act`; of a
             subclass of `Policy`, or a class with its `begin` and `act`, one object of which flies
-            all episodes; or of a box tracker, a class with `begin` and `update`.
+            all episodes; of a box tracker, a class with `begin` and `update`; or of an agent that
+            answers with a way to fly, a class with `plan`.
         changes: Changes of `env`; those in the attribute `env_settings` come first.
 
     Raises:
@@ -150,6 +151,10 @@ def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
 
         return pilot(path, changes)
     made = inspect.isclass(found)
+    if made and hasattr(found, "plan"):
+        from eyas.benchmark.policies.waypoints import own_agent
+
+        return own_agent(found, changes, path)
     fits = callable(found) and not (made and left_out(found, ["act"]))
     if not fits or takes(found, *() if made else (None,)):
         raise ConfigError(

@@ -231,7 +231,9 @@ class SandboxedPolicy:
         """Send the observations of those who decide, and return their actions."""
         seen = sight.observation
         parts = seen if isinstance(seen, dict) else {"": seen}
-        head = {"act": list(parts), "heard": sight.heard is not None}
+        head = {"act": list(parts), "heard": sight.heard is not None, "clock": sight.clock}
+        if sight.told is not None and "words" in self.told:
+            head["words"] = list(sight.told.words)
         arrays: list[Array] = [sight.deciding, *(part[sight.deciding] for part in parts.values())]
         if sight.heard is not None:
             arrays.append(sight.heard)

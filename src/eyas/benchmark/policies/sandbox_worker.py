@@ -83,7 +83,7 @@ class _Answers:
                 shape = len(deciding), *new.shape[1:]
                 self._latest[name] = np.zeros(shape, new.dtype)
             self._latest[name][deciding] = new
-        alone = head["act"] == [""]
+        alone, words = head["act"] == [""], head.get("words")
         sight = PolicyInput(
             observation=self._latest[""] if alone else self._latest,
             deciding=deciding,
@@ -91,6 +91,10 @@ class _Answers:
             visible=_unknown,
             covered=np.zeros(len(deciding), np.bool_),
             heard=heard,
+            clock=head["clock"],
+            told=Instruction(tuple(words), np.zeros((len(words), 0), np.float32))
+            if words
+            else None,
         )
         return self._told(self._policy.act(sight), deciding)
 
@@ -110,6 +114,10 @@ class _Answers:
                 failed[row] = Failure.of(error, traced=False)
         messages = [] if decision.messages is None else [np.asarray(decision.messages, np.float64)]
         return {"failed": failed}, [actions, *messages]
+
+
+_NO_NUMBERS: Any = np.zeros((0, 0), np.float32)
+"""Attributes of instructions in the middle of a flight: observations have them."""
 
 
 def _unknown() -> Any:  # noqa: ANN401  # never returns

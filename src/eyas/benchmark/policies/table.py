@@ -76,6 +76,7 @@ velocities."""
 
 FILES = {
     ".onnx": f"{_ROOM}.onnx:load_onnx",
+    ".json": f"{_ROOM}.chat_agent:open_chat",
     ".zip": f"{_ROOM}.sb3:Sb3Policy",
     ".pt": f"{_ROOM}.torch_file:TorchPolicy",
     ".pth": f"{_ROOM}.torch_file:TorchPolicy",
