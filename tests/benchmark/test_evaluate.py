@@ -16,7 +16,8 @@ from typer.testing import CliRunner
 
 from eyas.benchmark.commands import _changes
 from eyas.benchmark.episodes.episode import seed_sets
-from eyas.benchmark.evaluation import run
+from eyas.benchmark.evaluation import join_shards, one_shard, run
+from eyas.benchmark.flight.policy_runner import run_here
 from eyas.benchmark.plan.plan import EvaluationPlan, check
 from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.benchmark.records.record import RecordFile, read_records
@@ -45,6 +46,32 @@ def test_the_result_tells_all_that_repeats_it(whole):
     assert {row["group"] for row in result["rows"]} == {"all", "visibility"}
     lines = (whole / "result.csv").read_text().splitlines()
     assert len({line.count(",") for line in lines}) == 1
+
+
+def test_shards_of_several_machines_are_the_whole(whole, tmp_path, capsys):
+    folders = [tmp_path / f"shard{number}" for number in (1, 2)]
+    for number, folder in enumerate(folders, 1):
+        run(PLAN, folder, runner=one_shard(run_here, number, 2))
+        assert f"4 of 8 episodes in {folder}" in capsys.readouterr().out
+        assert not (folder / "result.json").exists()
+    joined, half = tmp_path / "joined", tmp_path / "half"
+
+    def none_left(plan, left, answers):
+        assert not left
+        return iter(())
+
+    join_shards(PLAN, joined, folders[::-1])
+    run(PLAN, joined, resume=True, quiet=True, runner=none_left)
+    join_shards(PLAN, half, folders[:1])
+    run(PLAN, half, resume=True, quiet=True)  # flies the rest
+    for name in FILES:
+        assert (joined / name).read_bytes() == (whole / name).read_bytes()
+        assert (half / name).read_bytes() == (whole / name).read_bytes()
+    other = PLAN.model_copy(update={"episodes": 3})
+    with pytest.raises(OutputError, match=r"shard1: cannot be continued: 'episodes' was 2"):
+        join_shards(other, tmp_path / "other", folders)
+    with pytest.raises(ConfigError, match=r"'1/9' is not allowed: at most 4 shards.*--batch"):
+        run(PLAN, tmp_path / "many", runner=one_shard(run_here, 1, 9), quiet=True)
 
 
 def test_the_command_that_repeats_it_survives_a_shell():

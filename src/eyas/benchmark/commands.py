@@ -16,7 +16,9 @@ from eyas.engine.terminal.options import (
     Quiet,
     Ray,
     Resume,
+    Shard,
     by_policy,
+    parsed_shard,
     to_write,
 )
 
@@ -120,6 +122,13 @@ def evaluate(
     resume: Resume = False,
     overwrite: Overwrite = False,
     ray: Ray = False,
+    shard: Shard = None,
+    join: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--join", metavar="FOLDER", help=f"Take the episodes of a shard, too; {SEVERAL}."
+        ),
+    ] = None,
     quiet: Quiet = False,
 ) -> None:
     """Fly a policy in the episodes of a protocol, and tell how well it tracks.
@@ -147,8 +156,14 @@ def evaluate(
         values["seeds"] = seed_sets(seeds) if seeds is not None else (seed,)
     plan = validated(EvaluationPlan, values)
     folder = out or Path("runs/evaluation") / folder_name(plan)
-    if latency_curve and (as_published or videos):
-        raise ConfigError("--latency-curve: not together with --as-published or --videos")
+    if latency_curve and (as_published or videos or shard or join):
+        raise ConfigError(
+            "--latency-curve: not together with --as-published, --videos, --shard or --join"
+        )
+    if (shard and (join or plots or videos)) or (join and overwrite):
+        raise ConfigError(
+            "--shard: not together with --join, --plots or --videos; --join: not with --overwrite"
+        )
     if ray and latency == "measured":
         raise ConfigError("--ray: not together with --latency measured: that is of this machine")
     with _runner(ray=ray) as runner:
@@ -158,9 +173,14 @@ def evaluate(
 
             records = run_curve(plan, folder, runner=runner, **common)
         else:
-            from eyas.benchmark.evaluation import run
+            from eyas.benchmark.evaluation import join_shards, one_shard, run
 
             own: Any = {"as_published": as_published, "videos": videos}
+            if join:
+                join_shards(plan, folder, join)
+                common["resume"] = True
+            part = parsed_shard(shard)
+            runner = runner if part is None else one_shard(runner, *part)
             records = run(plan, folder, runner=runner, **own, **common)
     if all(record.error is not None for record in records):
         raise typer.Exit(1)

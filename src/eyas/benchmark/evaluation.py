@@ -4,7 +4,7 @@ import json
 import logging
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from hashlib import sha256
 from pathlib import Path
@@ -13,6 +13,7 @@ import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from eyas.benchmark.episodes.episode import EpisodeSpec
 from eyas.benchmark.flight.policy_runner import Runner, run_here
 from eyas.benchmark.plan.plan import EvaluationPlan, Stamp, batches, check, stamp
 from eyas.benchmark.records.croissant import croissant
@@ -31,7 +32,7 @@ from eyas.benchmark.report import plots as evaluation_plots
 from eyas.benchmark.report.films import film
 from eyas.benchmark.report.plots import draw_plots, require_matplotlib
 from eyas.engine.core.codecs.pyav import pyav
-from eyas.engine.core.errors import OutputError
+from eyas.engine.core.errors import ConfigError, OutputError
 from eyas.engine.core.files import refusals, write_atomic
 from eyas.engine.core.folder_lock import folder_lock
 from eyas.engine.core.machine import describe_machine
@@ -57,6 +58,7 @@ def run(
 
     Args:
         as_published: Whether the figures are those that the original's code would have printed.
+        runner: Flies the batches; `one_shard` leaves some to others, and then there are no figures.
 
     Raises:
         EyasError: A setting is wrong, or the folder is taken.
@@ -70,6 +72,10 @@ def run(
     with folder_lock(out, "evaluating into it"):
         records = _prepared(out, made, resume=resume, overwrite=overwrite)
         _fly(plan, out, records, runner, quiet=quiet)
+        found = read_records(out / EPISODES)
+        if len(found) < plan.count:
+            _say_share(out, len(found), plan.count, quiet=quiet)
+            return found
         flown = _in_order(plan, out)
         rows = write_result(out, made, flown, as_published=as_published)
         _write_croissant(out, made)
@@ -102,6 +108,59 @@ def _prepared(out: Path, made: Stamp, *, resume: bool, overwrite: bool) -> list[
             "with --overwrite"
         )
     found, records = load_run(out, trust=True)  # it must be the protocol that the user names
+    _require_same(out, found, made)
+    return records
+
+
+def join_shards(plan: EvaluationPlan, out: Path, shards: Sequence[Path]) -> None:
+    """Write the episodes of shards into a folder, which `run` then continues.
+
+    Raises:
+        EyasError: A setting is wrong, or one of the folders has an evaluation of something else.
+    """
+    made = stamp(plan).model_copy(update={"entry": check(plan)})
+    with folder_lock(out, "evaluating into it"):
+        known = {record.name for record in _prepared(out, made, resume=True, overwrite=False)}
+        for folder in shards:
+            found, records = load_run(folder, trust=True)
+            _require_same(folder, found, made)
+            with RecordFile(out / EPISODES) as file:
+                file.add(record for record in records if record.name not in known)
+            known |= {record.name for record in records}
+
+
+def one_shard(runner: Runner, number: int, count: int) -> Runner:
+    """Return a runner that flies every `count`-th batch of a plan, from the `number`-th, from 1."""
+
+    def flown(
+        plan: EvaluationPlan, left: list[list[EpisodeSpec]], answers: list[float]
+    ) -> Iterator[list[EpisodeRecord]]:
+        parts = batches(plan)
+        if count > len(parts):
+            raise ConfigError(
+                f"--shard: '{number}/{count}' is not allowed: at most {len(parts)} shards, one "
+                "for each batch; --batch makes smaller ones"
+            )
+        own = {part[0].name for part in parts[number - 1 :: count]}
+        return iter(runner(plan, [part for part in left if part[0].name in own], answers))
+
+    return flown
+
+
+def _say_share(out: Path, flown: int, count: int, *, quiet: bool) -> None:
+    if not quiet:
+        print(
+            f"{flown} of {count} episodes in {out}; the same command with --join for each folder, "
+            "without --shard, makes figures of all"
+        )
+
+
+def _require_same(out: Path, found: Stamp, made: Stamp) -> None:
+    """Refuse a folder with an evaluation of something else.
+
+    Raises:
+        OutputError: Another build, protocol or policy has flown, or another plan.
+    """
     if differs := found.other_build(made):
         raise OutputError(
             f"{out}: cannot be continued: flown by build {found.build.id} of Eyas, which differs "
@@ -123,7 +182,6 @@ def _prepared(out: Path, made: Stamp, *, resume: bool, overwrite: bool) -> list[
                 f"{out}: cannot be continued: '{name}' was {old_plan[name]!r}, now it is "
                 f"{new_plan[name]!r}"
             )
-    return records
 
 
 def _delete(out: Path) -> None:

@@ -80,8 +80,9 @@ def make_dataset(
         EyasError: The recipe is wrong or cannot be met, or the folder is taken; one line.
     """
     from eyas.datasets.making.make import Making
-    from eyas.datasets.making.run import parsed_shard, run
+    from eyas.datasets.making.run import run
     from eyas.engine.core.errors import UnknownNameError
+    from eyas.engine.terminal.options import parsed_shard
 
     for name in choices:
         if name not in DatasetChoices.__annotations__:

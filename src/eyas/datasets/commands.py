@@ -16,8 +16,10 @@ from eyas.engine.terminal.options import (
     Quiet,
     Ray,
     Resume,
+    Shard,
     Workers,
     apart,
+    parsed_shard,
     refuse_both,
     to_write,
 )
@@ -197,12 +199,7 @@ def make_dataset(
     sample: Annotated[
         bool, typer.Option("--sample", help="Make a hundredth, to look at it first.")
     ] = False,
-    shard: Annotated[
-        str | None,
-        typer.Option(
-            "--shard", metavar="I/N", help="Make one of N shards; see eyas dataset merge."
-        ),
-    ] = None,
+    shard: Shard = None,
     ray: Ray = False,
     trust: Annotated[
         bool, typer.Option("--trust", help="Let the recipe name code, which is then run.")
@@ -213,7 +210,7 @@ def make_dataset(
     """Record a data set with all cores, export and describe it."""
     from eyas.datasets.asked import Asked
     from eyas.datasets.making.make import Making
-    from eyas.datasets.making.run import parsed_shard, run
+    from eyas.datasets.making.run import run
 
     if quiet:
         logging.getLogger("eyas").setLevel(logging.ERROR)

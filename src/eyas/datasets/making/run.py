@@ -1,6 +1,5 @@
 """`eyas dataset make`, from the words of a user."""
 
-import re
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -54,17 +53,3 @@ def run(
             recorded = stack.enter_context(on_ray())
         make(plan, Path(out), making, recorded)
     report(plan, out, quiet=making.quiet)
-
-
-def parsed_shard(text: str | None) -> tuple[int, int] | None:
-    """Return number and count of `3/100`.
-
-    Raises:
-        ConfigError: It is of another form.
-    """
-    if text is None:
-        return None
-    found = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text)
-    if not found or not 1 <= int(found[1]) <= int(found[2]):
-        raise ConfigError(f"--shard: {text!r} is not allowed: I/N, I from 1 to N, such as 3/100")
-    return int(found[1]), int(found[2])

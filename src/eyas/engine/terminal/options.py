@@ -77,6 +77,9 @@ Workers = Annotated[
 Ray = Annotated[
     bool, typer.Option("--ray", help="Spread the work over a Ray cluster (extra cluster).")
 ]
+Shard = Annotated[
+    str | None, typer.Option("--shard", metavar="I/N", help="Do one of N shares of the work.")
+]
 Plots = Annotated[bool, typer.Option("--plots", help="Draw the figures, too (extra plots).")]
 Trust = Annotated[
     bool, typer.Option("--trust", help="Let the file of settings name code, which is then run.")
@@ -98,6 +101,20 @@ def by_policy(what: str) -> Any:  # noqa: ANN401  # Typer's
 def apart(names: list[str] | None) -> tuple[str, ...]:
     """Return the names of an option that takes several, given with commas or several times."""
     return tuple(name for text in names or () for name in text.split(",") if name)
+
+
+def parsed_shard(text: str | None) -> tuple[int, int] | None:
+    """Return number and count of `3/100`.
+
+    Raises:
+        ConfigError: It is of another form.
+    """
+    if text is None:
+        return None
+    found = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text)
+    if not found or not 1 <= int(found[1]) <= int(found[2]):
+        raise ConfigError(f"--shard: {text!r} is not allowed: I/N, I from 1 to N, such as 3/100")
+    return int(found[1]), int(found[2])
 
 
 def refuse_both(*, resume: bool, overwrite: bool) -> None:
