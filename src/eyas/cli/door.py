@@ -11,6 +11,7 @@ HOUSE = House(
             "serve": "eyas.cli.runs:serve",
             "targets": "eyas.cli.targets.commands:app",
             "bring": "eyas.cli.tools:bring",
+            "open": "eyas.cli.tools:open_run",
             "config": "eyas.cli.tools:config_app",
             "cache": "eyas.cli.tools:cache_app",
             "bench": "eyas.cli.tools:bench",

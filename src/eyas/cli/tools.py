@@ -210,6 +210,34 @@ def warm_cache(map_name: OnlyMaps = None, weather: OnlyWeathers = None) -> None:
     run_warm(map_name or (), weather or ())
 
 
+_SHOWN = ("overview.html", "index.html", "**/episode.*", "plots/*.png", "**/*.mp4", "**/*.png")
+"""What there is to look at in folders of Eyas, the best first."""
+
+_SEEN_BY = {".html", ".mp4", ".webp", ".png", ".jpg", ".jpeg", ".svg"}
+
+
+def open_run(
+    run: Annotated[Path, typer.Argument(help="Folder of a recording, data set, training, ...")],
+    print_only: Annotated[
+        bool, typer.Option("--print", help="Print what would be opened, and open nothing.")
+    ] = False,
+) -> None:
+    """Show the film, page or plot of a run in the browser or the viewer of this machine."""
+    from eyas.engine.core.errors import DataFileError
+
+    if not run.exists():
+        raise DataFileError(f"{run}: cannot read: no such file or folder")
+    found = [run] if run.is_file() else [path for name in _SHOWN for path in sorted(run.glob(name))]
+    shown = next((path for path in found if path.suffix.lower() in _SEEN_BY), None)
+    if shown is None:
+        raise DataFileError(f"{run}: holds no page, film or picture")
+    typer.echo(str(shown))
+    if not print_only:
+        import webbrowser
+
+        webbrowser.open(shown.resolve().as_uri())
+
+
 _BESIDES = {
     "shapely": "its wheel has GEOS, LGPL-2.1",
     "numpy": "its wheel has OpenBLAS, BSD-3-Clause, and libgfortran, GPL-3.0 with the exception",

@@ -123,7 +123,7 @@ def import_tracks(
         typer.Option(
             "--at",
             metavar="X,Y,TURN",
-            help="Where its middle is put on the map [m], and by how many degrees it is turned; "
+            help="Place of its middle on the map, in metres, and degrees by which it is turned; "
             "by default where its metadata say, or in the middle.",
         ),
     ] = None,
