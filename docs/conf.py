@@ -46,6 +46,7 @@ BELOW = {
     "maps/README": "maps/*",
     "protocols/README": "protocols/*",
     "decisions/README": "decisions/*",
+    "lab/README": "lab/*",
     "policies/README": "policies/*",
 }
 """Pages with pages of their own below them in the navigation."""
