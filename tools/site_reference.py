@@ -23,10 +23,11 @@ NAMES: dict[str, tuple[str, ...]] = {
     ),
     "Environments": (
         *("TrackingEnv", "EyasVectorEnv", "EyasVecEnv", "EyasParallelEnv", "Observation"),
-        "register_map",
+        *("register_map", "make_lerobot_env", "hover_action", "LegacyObservation"),
     ),
     "Settings": (
-        *("Config", "EyasConfig", "SimConfig", "TrackerConfig", "load_settings", "updated"),
+        *("Config", "EyasConfig", "SimConfig", "TrackerConfig", "Section", "load_settings"),
+        "updated",
     ),
     "Learning": ("Algorithm", "Rollout"),
     "Recordings": (
@@ -36,13 +37,27 @@ NAMES: dict[str, tuple[str, ...]] = {
     ),
     "Policies and trackers": (
         *("Policy", "PolicyInput", "Decision", "Start", "BoxTracker", "Tracker", "protocol_named"),
+        *("flown_drone", "towards"),
     ),
     "Rewards and the state": (
         *("RewardTerm", "Snapshot", "TrackerState", "CameraState", "StepResult", "Picture"),
-        *("rotate", "PHYSICS_STEP"),
+        *("rotate", "rotate_back", "PHYSICS_STEP"),
+    ),
+    "Sensors": ("Sensor",),
+    "Packets and protocols of the wire": (
+        *(
+            "InputPacket",
+            "BasicPacket",
+            "RewardPacket",
+            "RadarPacket",
+            "StepLine",
+            "Face",
+            "Orders",
+        ),
+        "serve",
     ),
     "The simulation": ("Simulation", "build_simulation", "together", "each_alone", "kernel"),
-    "Targets and meshes": ("Ride", "Mesh", "Material", "Shell"),
+    "Targets and meshes": ("ATTRIBUTES", "Ride", "Mesh", "Material", "Shell"),
     "Maps and weathers": (
         *("MapPlan", "MapRecipe", "read_plan", "write_plan", "Survey", "Hills", "Mound"),
         *("Terrain", "RoadEdge", "RoadGraph", "RoadNetwork", "RoadNode", "Scene", "ObjectClass"),
