@@ -110,7 +110,7 @@ def give_back(
 
 def outdated(app: Sphinx, env: object, *sets: set[str]) -> list[str]:
     """Return the pages that are made from the code, which may have changed though they have not."""
-    return ["reference/api", "reference/commands", "reference/settings", "speed"]
+    return ["reference/api", "reference/commands", "speed"]
 
 
 def setup(app: Sphinx) -> None:

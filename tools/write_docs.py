@@ -1,5 +1,5 @@
-"""Write the parts of the documents that are made from the code: of labels, of plans of maps, model
-cards, tables of figures, and the leaderboard of what ships.
+"""Write the parts of the documents that are made from the code: of settings, of labels, of plans of
+maps, model cards, tables of figures, and the leaderboard of what ships.
 
 python tools/write_docs.py           # writes them
 python tools/write_docs.py --check   # ends with 1 if they are not up to date
@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import looks_bench
+import site_reference
 from plan_page import page_of_records, schema_text
 from standings import standings
 
@@ -75,10 +76,12 @@ def documents() -> dict[Path, str]:
     schema = json.dumps(label_schema(), indent=2, ensure_ascii=False) + "\n"
     plan, leaders = DOCS / "maps" / "plan.md", DOCS / "leaderboard.md"
     speed, looks = DOCS / "speed.md", DOCS / "looks.md"
+    settings = DOCS / "reference" / "settings.md"
     return {
         speed: made(speed.read_text(), speed_table()),
         looks: made(looks.read_text(), looks_tables()),
         leaders: made(leaders.read_text(), standings()),
+        settings: made(settings.read_text(), site_reference.settings()),
         labels: made(labels.read_text(), label_table()),
         DOCS / "labels.schema.json": schema,
         plan: made(plan.read_text(), page_of_records()),
