@@ -14,11 +14,15 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "tools"))
 
 import site_reference  # noqa: E402  # of tools
+from version import REPOSITORY  # noqa: E402
 
 project = "Eyas"
 author = "The Eyas developers"
 copyright = "The Eyas developers; MIT licence"  # Sphinx's word
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+extensions = [
+    *("myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"),
+    "sphinx_copybutton",
+]
 source_suffix = [".md"]
 
 suppress_warnings = ["myst.header"]  # pages whose first heading is below another's
@@ -31,13 +35,22 @@ autodoc_typehints = "description"
 autodoc_mock_imports = ["torch", "stable_baselines3", "pettingzoo"]  # extras, slow to import
 autodoc_default_options = {"members": True}
 napoleon_numpy_docstring = False
+napoleon_use_ivar = True  # else a field that has a docstring too is described twice
 
 html_theme = "furo"
 html_title = "Eyas"
+html_logo = html_favicon = "_static/logo.svg"
+html_theme_options = {
+    "source_repository": REPOSITORY,
+    "source_branch": "main",
+    "source_directory": "docs/",
+    "top_of_page_buttons": ["view", "edit"],
+}
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_extra_path = ["films"]
 html_show_sphinx = False
+copybutton_prompt_text = "$ "
 html_show_sourcelink = False
 html_copy_source = False
 
@@ -46,6 +59,7 @@ BELOW = {
     "maps/README": "maps/*",
     "protocols/README": "protocols/*",
     "decisions/README": "decisions/*",
+    "lab/README": "lab/*",
     "policies/README": "policies/*",
 }
 """Pages with pages of their own below them in the navigation."""
@@ -59,6 +73,7 @@ def complete(app: Sphinx, page: str, source: list[str]) -> None:
     up = "../" * page.count("/")
     for file, own in OUTSIDE.items():
         text = re.sub(rf"\]\((?:\.\./)+{re.escape(file)}", f"]({up}{own}", text)
+    text = re.sub(r"\]\((?:\.\./)+((?:art/)?README\.md)", rf"]({REPOSITORY}/blob/main/\1", text)
     for name, made in site_reference.MADE.items():
         marker = f"<!-- site: {name} -->"
         if marker in text:
@@ -95,7 +110,7 @@ def give_back(
 
 def outdated(app: Sphinx, env: object, *sets: set[str]) -> list[str]:
     """Return the pages that are made from the code, which may have changed though they have not."""
-    return ["reference/api", "reference/commands", "reference/settings", "speed"]
+    return ["reference/api", "reference/commands", "speed"]
 
 
 def setup(app: Sphinx) -> None:

@@ -23,10 +23,11 @@ NAMES: dict[str, tuple[str, ...]] = {
     ),
     "Environments": (
         *("TrackingEnv", "EyasVectorEnv", "EyasVecEnv", "EyasParallelEnv", "Observation"),
-        "register_map",
+        *("register_map", "make_lerobot_env", "hover_action", "LegacyObservation"),
     ),
     "Settings": (
-        *("Config", "EyasConfig", "SimConfig", "TrackerConfig", "load_settings", "updated"),
+        *("Config", "EyasConfig", "SimConfig", "TrackerConfig", "Section", "load_settings"),
+        "updated",
     ),
     "Learning": ("Algorithm", "Rollout"),
     "Recordings": (
@@ -36,13 +37,27 @@ NAMES: dict[str, tuple[str, ...]] = {
     ),
     "Policies and trackers": (
         *("Policy", "PolicyInput", "Decision", "Start", "BoxTracker", "Tracker", "protocol_named"),
+        *("flown_drone", "towards"),
     ),
     "Rewards and the state": (
         *("RewardTerm", "Snapshot", "TrackerState", "CameraState", "StepResult", "Picture"),
-        *("rotate", "PHYSICS_STEP"),
+        *("rotate", "rotate_back", "PHYSICS_STEP"),
+    ),
+    "Sensors": ("Sensor",),
+    "Packets and protocols of the wire": (
+        *(
+            "InputPacket",
+            "BasicPacket",
+            "RewardPacket",
+            "RadarPacket",
+            "StepLine",
+            "Face",
+            "Orders",
+        ),
+        "serve",
     ),
     "The simulation": ("Simulation", "build_simulation", "together", "each_alone", "kernel"),
-    "Targets and meshes": ("Ride", "Mesh", "Material", "Shell"),
+    "Targets and meshes": ("ATTRIBUTES", "Ride", "Mesh", "Material", "Shell"),
     "Maps and weathers": (
         *("MapPlan", "MapRecipe", "read_plan", "write_plan", "Survey", "Hills", "Mound"),
         *("Terrain", "RoadEdge", "RoadGraph", "RoadNetwork", "RoadNode", "Scene", "ObjectClass"),
@@ -140,7 +155,10 @@ def _plain(text: str) -> str:
 
 
 def settings() -> str:
-    """Return a table for each group of settings: type and range, default, unit, meaning."""
+    """Return a table for each group of settings: default, what is allowed, unit, meaning.
+
+    It stands in `docs/reference/settings.md`, where `tools/write_docs.py` writes it.
+    """
     from eyas.engine.settings.config import EyasConfig
 
     return "\n\n".join(_group("", EyasConfig))
@@ -180,8 +198,11 @@ def _setting(key: str, field: Any, text: str) -> str:  # noqa: ANN401  # pydanti
     standard = field.get_default(call_default_factory=True)
     default = "*needed*" if field.is_required() else f"`{json.dumps(_json(standard))}`"
     allowed = describe(field.annotation, field.metadata)
+    for power in (31, 63):
+        allowed = allowed.replace(str(2**power), f"2^{power}")
     cells = (f"`{key}`", default, _plain(allowed), _plain(units[0] if units else ""))
-    return f"| {' | '.join(cells)} | {text.replace('|', chr(92) + '|')} |"
+    text = re.sub(r"\bdocs/([\w/-]+)\.md", r"[\1](../\1.md)", text.replace("|", r"\|"))
+    return f"| {' | '.join(cells)} | {text} |"
 
 
 def _json(value: object) -> object:
@@ -201,7 +222,7 @@ def history() -> str:
     return str(page(bench / "history"))
 
 
-MADE = {"api": api, "commands": commands, "settings": settings, "history": history}
+MADE = {"api": api, "commands": commands, "history": history}
 """What a page gets in the place of `<!-- site: NAME -->`."""
 
 if __name__ == "__main__":

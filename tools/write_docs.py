@@ -1,5 +1,5 @@
-"""Write the parts of the documents that are made from the code: of labels, of plans of maps, model
-cards, tables of figures, and the leaderboard of what ships.
+"""Write the parts of the documents that are made from the code: of settings, of labels, of plans of
+maps, model cards, tables of figures, and the leaderboard of what ships.
 
 python tools/write_docs.py           # writes them
 python tools/write_docs.py --check   # ends with 1 if they are not up to date
@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import looks_bench
+import site_reference
 from plan_page import page_of_records, schema_text
 from standings import standings
 
@@ -19,6 +20,8 @@ from eyas.benchmark.report.reproduce.model_card import model_card
 from eyas.benchmark.report.reproduce.run import markdown
 from eyas.benchmark.report.reproduce.tables import TABLES, expected
 from eyas.cli.bench.measurement import Measurement, measurement_cells
+from eyas.dat.settings.keys import ENTRIES
+from eyas.dat.settings.layout import original_defaults
 from eyas.engine.exports.label import FIELDS, LabelField, label_schema
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -54,6 +57,19 @@ def speed_table() -> str:
     return "\n".join([title, "", *rows])
 
 
+def original_keys() -> str:
+    """Return the table of the keys of the original's `env_config.json`."""
+    rows = ["| original's key | value if missing | native setting |", "|---|---|---|"]
+    for entry in ENTRIES:
+        ours = ", ".join(f"`{path}`" for path in entry.paths)
+        for key in entry.keys:
+            group, _, name = key.rpartition(".")
+            known = original_defaults()
+            default = json.dumps(known[group][name] if group else known[name])
+            rows.append(f"| `{key}` | `{default}` | {ours} |")
+    return "\n".join(rows)
+
+
 def looks_tables() -> str:
     """Return what `tools/looks_bench.py` has measured."""
     found = json.loads((DOCS.parent / "bench" / "looks.json").read_text())
@@ -75,10 +91,13 @@ def documents() -> dict[Path, str]:
     schema = json.dumps(label_schema(), indent=2, ensure_ascii=False) + "\n"
     plan, leaders = DOCS / "maps" / "plan.md", DOCS / "leaderboard.md"
     speed, looks = DOCS / "speed.md", DOCS / "looks.md"
+    settings, files = DOCS / "reference" / "settings.md", DOCS / "configuration.md"
     return {
         speed: made(speed.read_text(), speed_table()),
         looks: made(looks.read_text(), looks_tables()),
         leaders: made(leaders.read_text(), standings()),
+        settings: made(settings.read_text(), site_reference.settings()),
+        files: made(files.read_text(), original_keys()),
         labels: made(labels.read_text(), label_table()),
         DOCS / "labels.schema.json": schema,
         plan: made(plan.read_text(), page_of_records()),

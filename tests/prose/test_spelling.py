@@ -41,3 +41,21 @@ def test_mistakes_are_found_in_prose_and_not_in_code(spelling, tmp_path):
         "drwan": "src/one.py:3",
         "reasn": "tests/test_one.py:1",
     }
+
+
+def test_awkward_words_are_found_in_documents_that_people_write(spelling, tmp_path):
+    texts = {
+        "README.md": "It tells\nnobody; tell them apart, told apart, `told`.\n",
+        "docs/one.md": "<!-- made by a tool -->\nIt is told.\n<!-- end -->\nThat which is none.\n",
+        "docs/lab/trial.md": "We were told.\n",
+        "CHANGELOG.md": "Besides, it was told.\n",
+    }
+    for name, text in texts.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    assert list(spelling.unwanted(tmp_path)) == [
+        "README.md:1: write it otherwise: tells",
+        "README.md:2: write it otherwise: nobody",
+        "docs/one.md:4: write it otherwise: That which",
+        "docs/one.md:4: write it otherwise: is none",
+    ]

@@ -84,7 +84,7 @@ class Evaluation(Config):
     protocol: Annotated[str, NAMES_CODE] = "paper"
     """Protocol, as for `eyas evaluate`."""
     weathers: Annotated[tuple[str, ...], NAMES_CODE] = ()
-    """None: `world.weather`."""
+    """Weathers of the episodes; none: `world.weather`."""
     episodes: Annotated[int, Field(ge=1, le=1000)] = 5
     """Episodes of each weather and start direction."""
     seed: Annotated[int, Field(ge=0, lt=2**62)] = 2_000_000
@@ -101,12 +101,14 @@ class DaggerConfig(Config):
     """Decisions after which the other goes on, with `dagger+ppo` or `dagger+` one of your own;
     rounded up to whole updates."""
     teacher: TeacherKind = TeacherKind.SIGHTED
-    """Who tells the right actions."""
+    """Who labels the actions: an oracle that sees only what the picture shows and goes on at the
+    target's last velocity, or one that always knows."""
     guided_timesteps: Annotated[int, Field(ge=0, le=2**40)] = 12_000
     """Over these decisions the share of environments that the teacher flies falls from all to none;
     0: the network flies all from the start."""
     fade: Annotated[float, Field(gt=0, le=1e6)] = 0.5
-    """An action told when the target has been out of sight for this time counts 1/e [s]."""
+    """The label of an action counts 1/e when the target has been out of sight for this time
+    [s]."""
     buffer: Count = 65_536
     """Latest decisions of a block that are kept, rounded up to whole updates. A block begins with
     an empty one, so that a run that is resumed gives the same as one that never stopped. Each takes
@@ -154,9 +156,11 @@ class TrackerTraining(Config):
         Round(flights=20, steps=1500),
         Round(flights=0, steps=4500),
     )
-    """Flights and lessons; the first round needs flights."""
+    """Rounds of batches of 32 flights, of an oracle in the first and then of the tracker itself,
+    and steps of learning of 128 pictures from all that there are. The first round needs
+    flights."""
     drives: Annotated[int, Field(ge=1, le=100_000)] = 45
-    """Batches of traffic from which it learns beforehand what drivers do."""
+    """Batches of traffic of 35 s from which it learns beforehand where drivers go."""
     drive_steps: Annotated[int, Field(ge=1, le=100_000_000)] = 10_000
     """Steps of the optimiser for that."""
     learning_rate: Annotated[float, Field(gt=0, le=1)] = 2e-3
@@ -196,9 +200,9 @@ class WordsTraining(Config):
     """
 
     blocks: Annotated[int, Field(ge=1, le=100_000)] = 60
-    """Blocks of new pictures, after each of which the run can be resumed."""
+    """Blocks of new pictures of a listener, after each of which the run can be resumed."""
     scenes: Annotated[int, Field(ge=32, le=2**16, multiple_of=32)] = 1024
-    """Pictures of a block, as many of each map and weather as of the others."""
+    """Pictures of a block, a multiple of 32: as many of each map and weather as of the others."""
     passes: Annotated[int, Field(ge=1, le=100)] = 2
     """How often each picture is shown."""
     learning_rate: Annotated[float, Field(gt=0, le=1)] = 3e-3
@@ -225,8 +229,11 @@ class TrainConfig(Section):
     section = "train"
 
     method: Annotated[str, NAMES_CODE] = "ppo"
-    """A name of the table `ALGORITHMS` or `package.module:Class`; two joined by `+` learn one after
-    the other."""
+    """By rewards (proximal policy optimisation), by a teacher (dataset aggregation), or by a
+    teacher at first; `tracker`: the network of a tracker that follows what its first box shows,
+    which `train.tracker` alone configures (docs/following-one-target.md); `words`: that of a
+    listener, which `train.words` alone configures (docs/following-words.md). Also
+    `package.module:Class`; two joined by `+` learn one after the other."""
     ppo: PpoConfig = PpoConfig()
     dagger: DaggerConfig = DaggerConfig()
     tracker: TrackerTraining = TrackerTraining()
@@ -236,7 +243,9 @@ class TrainConfig(Section):
     environments: Annotated[int, Field(ge=1, le=65536)] = 32
     """Environments that are stepped together."""
     stages: tuple[Stage, ...] = (Stage(total_timesteps=600_000),)
-    """The curriculum: one stage after the other."""
+    """The curriculum: stages with a number of decisions of all environments, the TSR of an
+    evaluation at which they end early, what differs from the common settings, and whether it is
+    flown on the simple map (docs/maps/simpleway.md) that stands for the map."""
     evaluation: Evaluation = Evaluation()
     begin_from: Annotated[str, Field(min_length=1)] | None = None
     """Folder of another run, whose network this one teaches further; None: a new network."""

@@ -30,9 +30,9 @@ class AirborneConfig(Config):
     """What flies through the world and is followed by nobody: distractors in the air."""
 
     birds: Annotated[int, Field(ge=0, le=200)] = 0
-    """Number of birds, in flocks of up to six."""
+    """Birds, in flocks of up to six (docs/weather.md); they are never targets."""
     drones: Annotated[int, Field(ge=0, le=20)] = 0
-    """Number of drones, each of which follows a vehicle of its own."""
+    """Drones, each of which follows a vehicle of its own; they are never targets."""
 
 
 class Space(NamedTuple):

@@ -63,24 +63,29 @@ class CameraConfig(Config):
     height: Annotated[int, Field(ge=8, le=8192)] = 240
     """[pixels]"""
     field_of_view: Annotated[Variation, AfterValidator(within(0.05, 2.8))] = 0.7854
-    """Horizontal [rad]; a variation is sampled anew for each tracker at each reset."""
+    """Horizontal [rad]; sampled for each tracker at each reset. Rewards, packets, labels and
+    overlays use that of their tracker."""
     samples: Literal[1, 2, 4] = 1
-    """Samples per pixel."""
+    """Samples for each pixel: in its middle, one above the other, or two by two, for 1, 1.45 and
+    2.3 times the time at 84x84."""
     pixel_filter: Literal["box", "tent"] | None = None
-    """What a pixel is the mean of: `box`, its samples; `tent`, those of its neighbours, too, by a
-    quarter from either side along rows and columns; None: `tent` where it has fewer than four."""
+    """What a pixel is the mean of: its samples (`box`), or those of its neighbours, too, by a
+    quarter from either side along rows and along columns (`tent`); null: `tent` where it has
+    fewer than four samples. See what flickers (docs/camera/further.md)."""
     mount: MountConfig | None = None
-    """Where it is fixed to the body, so that it tilts with it; None: the tracker carries it, on a
-    drone by a gimbal."""
+    """Where it is fixed to the body, so that it tilts with it; `start.pitch` still says where the
+    tracker starts. `null`: the gimbal carries it, or whatever the tracker has."""
     model: ModelName | None = None
-    """A camera by its data sheets, whose values take the place of defaults below; None: none."""
+    """A camera by its data sheets, see docs/camera/exposure.md: its values stand wherever a
+    setting below has its default. `null`: none."""
     spectrum: Spectrum = Spectrum.COLOUR
     """What light its sensor tells apart: `colour`, `grey`, `near-infrared`, of which the last two
     have a sensor with or without `imager`, or `thermal`, whose sensor is `thermal`."""
     thermal: ThermalConfig = ThermalConfig()
     """The sensor of a thermal camera."""
     imager: ImagerConfig | None = None
-    """The sensor, which counts photons; None: pictures without noise, as bright as by day."""
+    """The sensor, which counts photons; `{}` has the defaults. `null`: pictures without noise, as
+    bright as their weather is drawn."""
     exposure: ExposureConfig = ExposureConfig()
     """How the sensor is exposed."""
     dirt: DirtConfig | None = None

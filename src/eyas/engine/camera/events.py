@@ -15,7 +15,7 @@ class EventsConfig(Config):
     """
 
     enabled: bool = False
-    """Whether the tracker has one."""
+    """Whether the tracker has an event camera, see docs/camera/events.md."""
     width: Annotated[int, Field(ge=8, le=2048)] | None = None
     """[pixels]; None: that of the camera. With another shape than the camera's it shows the same
     view, squeezed."""
@@ -39,5 +39,5 @@ class EventsConfig(Config):
     """Light that a pixel sees in the dark, of the radiance of white paper in the sun: it keeps the
     logarithm finite."""
     most_samples: Annotated[int, Field(ge=1, le=1000)] = 32
-    """Most instants between two pictures that are drawn: one for each pixel of motion up to this.
-    """
+    """Most instants between two pictures that are drawn for it: one for each pixel of motion up
+    to this."""

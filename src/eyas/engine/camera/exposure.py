@@ -45,7 +45,7 @@ class ExposureConfig(Config):
     iso: tuple[Speed, Speed] = (100.0, 3200.0)
     """Lowest and highest speed (ISO 12232); none is below that of the sensor without gain."""
     metering: Metering = Metering.CENTRE
-    """`average`: the whole picture; `centre`: weighted towards its middle; `spot`: a tenth of its
+    """What part of the picture decides: the whole, weighted towards the middle, or a tenth of its
     width and height in the middle."""
     speed: Annotated[Variation, AfterValidator(within(0.0, 100.0))] = 0.4
     """Time in which a wrong exposure comes nearer to the right one by 63 % [s]; 0: the next

@@ -44,16 +44,22 @@ class LensConfig(Config):
     """
 
     model: LensModel = LensModel.PINHOLE
-    """`pinhole`; `brown`: Brown-Conrady's k1, k2, k3, p1, p2; `fisheye`: Kannala-Brandt's k1 to k4,
-    up to a quarter turn aside."""
+    """How the lens bends pictures: `brown` is Brown-Conrady's model with k1, k2, k3, p1 and p2,
+    `fisheye` Kannala-Brandt's with k1 to k4, up to a quarter turn aside. Coefficients are
+    OpenCV's, for the focal length of a pinhole of `camera.field_of_view`."""
     k1: Coefficient = 0.0
-    """Radial distortion; of `brown`, below 0 is a barrel."""
+    """Radial distortion; of `brown`, below 0 is a barrel. This and the following are sampled for
+    each tracker at each reset."""
     k2: Coefficient = 0.0
+    """The same."""
     k3: Coefficient = 0.0
+    """The same."""
     k4: Coefficient = 0.0
+    """The same, of `fisheye` only."""
     p1: Annotated[Variation, AfterValidator(within(-0.2, 0.2))] = 0.0
     """Tangential distortion, of lenses that are not centred."""
     p2: Annotated[Variation, AfterValidator(within(-0.2, 0.2))] = 0.0
+    """The same."""
     right: Offset = 0.0
     """Principal point right of the middle of the picture, as a share of its width."""
     below: Offset = 0.0

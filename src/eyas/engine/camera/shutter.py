@@ -17,9 +17,10 @@ class ShutterConfig(Config):
     """
 
     blur: bool = False
-    """Whether what moves while the shutter is open is blurred."""
+    """Whether what moves while the shutter is open is blurred, see docs/camera/shutter.md."""
     exposure: Annotated[Variation, AfterValidator(within(0.0, 0.1))] = 0.01
-    """Exposure time, as long as `camera.exposure` does not set one [s]."""
+    """Exposure time, where no sensor is modelled that sets it [s]; sampled for each tracker at
+    each reset."""
     readout: Annotated[Variation, AfterValidator(within(0.0, 0.1))] = 0.0
     """Time from the exposure of the first row to that of the last, the height times the line time
     [s]; 0: a global shutter."""

@@ -28,7 +28,8 @@ class VibrationConfig(Config):
     """
 
     angle: Annotated[Variation, AfterValidator(within(0.0, 0.1))] = 0.0
-    """Root mean square of the angle about each of the camera's three axes [rad]."""
+    """Root mean square of the shaking about each of the camera's three axes [rad]; sampled for
+    each tracker at each reset."""
     lowest: Annotated[float, Field(gt=0, le=1000)] = 8.0
     """Lowest frequency [Hz]."""
     highest: Annotated[float, Field(gt=0, le=1000)] = 120.0

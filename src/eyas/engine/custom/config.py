@@ -42,8 +42,8 @@ class CustomConfig(Config):
     """Where the first point of the trajectory is put, x and y [m], and the angle by which it is
     turned about it [rad]; None: where the file says."""
     smoothing: Annotated[float, Field(ge=0, le=10)] = 0.0
-    """Time over which the trajectory's positions are smoothed, see
-    `eyas.engine.custom.smoothing.smoothed`; 0: it passes all points [s]."""
+    """Time over which the positions of `trajectory` are smoothed, see docs/own-targets.md; 0: the
+    body passes all points [s]."""
     body: Text = "Pedestrian"
     """Kind that is moved by `trajectory` or `behaviour`, if there is neither `mesh` nor `path`."""
     up: Literal["y", "z"] | None = None

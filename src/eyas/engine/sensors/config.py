@@ -22,8 +22,9 @@ class LidarConfig(Config):
     frequency: Annotated[float, Field(gt=0, le=500)] = 12.0
     """Turns per second, its rate [Hz]."""
     mount: MountConfig | None = None
-    """Where it is fixed to the body; None: where the original has it, 3.1 cm above the middle of a
-    drone, or 10 cm behind that of a car."""
+    """Where it is fixed to the body [m], and how it is turned [rad], by yaw, then pitch (positive
+    down), then roll. `null`: where the original has it, 3.1 cm above the middle of a drone, or 10
+    cm behind that of a car."""
     min_range: Annotated[float, Field(ge=0, le=1e3)] = 0.2
     """Shortest distance that is measured [m]."""
     max_range: Annotated[float, Field(gt=0, le=1e3)] = 12.0
@@ -106,6 +107,6 @@ class SensorsConfig(Config):
     camera: CameraErrors = CameraErrors()
     """Pictures."""
     further: tuple[FurtherSensorConfig, ...] = ()
-    """Sensors that trackers have besides, in the table `eyas.engine.sensors.table` or of your
-    own.
-    """
+    """Further sensors of trackers: `compass`, `barometer`, or one of your own as
+    `my_package.module:ATTRIBUTE`, see docs/sensors.md. Each entry is a name, or an object with
+    the keys below."""

@@ -34,9 +34,10 @@ class EngineConfig(SimConfig):
     mode: Mode = Mode.VIDEO
     """Intended use of the configuration."""
     verbose: bool = False
-    """Whether each step is logged in the original's words: by `eyas video` in `<tracker>.log`,
-    by `eyas serve` in the original's `logs/Agent<i>.log`, by environments to Python's logger
-    `eyas.steps`."""
+    """Whether each step is logged in the original's words: by `eyas video` in `<tracker>.log`
+    beside `dir_info.json`, by `eyas serve` in the original's `logs/Agent<i>.log`, by environments
+    to Python's logger `eyas.steps` (show it with `logging.basicConfig()`) and to
+    `env.log_folder`. Each episode that ends is one line of the logger `eyas`."""
     env: EnvConfig = EnvConfig()
     video: VideoConfig = VideoConfig()
     own: dict[str, dict[str, Any]] = {}  # noqa: RUF012  # pydantic copies it

@@ -41,11 +41,12 @@ class GimbalConfig(Config):
     """Range and rates at which an agent turns its camera. The defaults are those of the demo."""
 
     pitch_rate: Annotated[float, Field(gt=0, le=20)] = 1.5
-    """Fastest turn up and down [rad/s]."""
+    """Fastest turn of the camera up and down, by actions with `+gimbal` [rad/s]."""
     yaw_rate: Annotated[float, Field(gt=0, le=20)] = 2.5
     """Fastest turn to the left and right [rad/s]."""
     least_pitch: Annotated[float, Field(ge=-1.6, le=1.6)] = -0.5
-    """Highest look, positive down [rad]."""
+    """Highest look, positive down [rad]. The joints of a drone go from -0.5 to 1.5, a car's from
+    -1.0."""
     most_pitch: Annotated[float, Field(ge=-1.6, le=1.6)] = 1.5
     """Lowest look, positive down [rad]."""
     most_yaw: Annotated[float, Field(gt=0, le=1.7)] = 1.7
@@ -131,7 +132,7 @@ class ObservationConfig(Config):
     """Size of picture, depth and classes [pixels]; they show the camera's whole view, squeezed if
     their shape is another."""
     height: Annotated[int, Field(ge=8, le=8192)] = 84
-    """[pixels]"""
+    """Height of the same [pixels]."""
     colours: Colours = Colours.RGB
     """Channels of the picture."""
     layout: ColourLayout = ColourLayout.HWC
@@ -154,7 +155,9 @@ class EnvConfig(Config):
     """Meaning of an agent's actions in the environments, and what it sees."""
 
     actions: ActionKind = ActionKind.DISCRETE
-    """Kind of actions of the agent."""
+    """The seven numbered actions; or four numbers for forward, left, up, turn counter-clockwise:
+    shares of the speeds from -1 to 1, or m/s and rad/s. With `+gimbal` they also turn the camera
+    (docs/training.md)."""
     action_repeat: Annotated[int, Field(ge=1, le=500)] = 1
     """Number of control steps that an action lasts; their rewards are added up, and only the last
     is observed. It ends early with the episode."""

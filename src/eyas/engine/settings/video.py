@@ -73,9 +73,9 @@ class VideoConfig(ActionSpeeds):
         "mark",
     )
     """Output formats; where the extra `video` is not installed, the default has `webp` instead of
-    `mp4`. `jpeg`, `png`, `mp4`, `webp`, `labels`, `mark`, `clean`, `cameras`, `masks`,
-    `classes`, `depth`, `normals`, `arrays`, `flow`, `sensors`, `lidar`, `events`, `scene`,
-    `openscenario`, `rosbag`, `rosbag-mcap`, or your own as `my_package.module:Class`."""
+    `mp4`. `jpeg`, `mp4`, `webp`, `labels`, `mark`, `png`, `clean`, `cameras`, `masks`, `classes`,
+    `depth`, `normals`, `arrays`, `flow`, `sensors`, `lidar`, `events`, `scene`, `openscenario`,
+    `rosbag`, `rosbag-mcap`, or your own as `my_package.module:Class`; see docs/writers.md."""
     jpeg_quality: Annotated[int, Field(ge=1, le=100)] = 95
     """Quality of the JPEG pictures; one of 320 x 240 takes some 36 kB at 95, and 93 kB at 100,
     which an `env_config.json` means."""

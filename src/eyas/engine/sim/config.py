@@ -30,8 +30,9 @@ class ControlConfig(Config):
     """2 ms steps from an action to its effect; drones hover before that of the first. Drawn at each
     reset, rounded."""
     observation_latency_steps: Latency = 0.0
-    """2 ms steps by which agents see pictures and sensors late, at the beginning of an episode the
-    first ones. Drawn at each reset, rounded."""
+    """2 ms steps by which agents see pictures and sensors late; at the beginning of an episode
+    they see its first state. Rewards, ends and `info` are on time, see docs/sensors.md. Drawn at
+    each reset, rounded."""
 
 
 class SimConfig(Config):
@@ -49,7 +50,8 @@ class SimConfig(Config):
     tracker: TrackerConfig = TrackerConfig()
     camera: CameraConfig = CameraConfig()
     cameras: tuple[FurtherCameraConfig, ...] = ()
-    """Cameras that each tracker has beside that one, by name."""
+    """Cameras that each tracker has beside its own, see docs/camera/further.md: each has all
+    settings of `camera`, and those below."""
     lidar: LidarConfig = LidarConfig()
     sensors: SensorsConfig = SensorsConfig()
     control: ControlConfig = ControlConfig()
@@ -61,7 +63,8 @@ class SimConfig(Config):
     custom: CustomConfig | None = None
     """A target of one's own, in the place of `target`."""
     extras: tuple[ExtraConfig, ...] | None = None
-    """Groups that share the world with the targets as distractors; None: the map's pedestrians."""
+    """Groups that share the world with the targets as distractors; `null`: the pedestrians of the
+    map, see docs/behaviours.md."""
     airborne: AirborneConfig = AirborneConfig()
 
     @model_validator(mode="after")

@@ -77,4 +77,4 @@ class ObjectsConfig(Config):
     group_size: Annotated[int, Field(ge=1, le=1000)] = 4
     """Objects placed together."""
     offset: Offset = 0.0
-    """Distance from the middle of the road [m]."""
+    """Distance to the left of the middle of the road [m]; mirrored: on both sides."""

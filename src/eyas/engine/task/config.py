@@ -57,19 +57,21 @@ class StartConfig(Config):
     """
 
     pitch: Annotated[Variation, AfterValidator(within(0.1, 3.0))] = 1.0
-    """Camera pitch, positive down [rad]; the gimbal limits it to 0.5 to 1.5, but the start position
-    follows from the full value."""
+    """Camera pitch, positive down [rad]; the gimbal limits it to 0.5 to 1.5, but the start
+    position is computed from the full value. Camera paths fly at the distance from which it is
+    needed, 60 m at most."""
     height: Annotated[Variation, AfterValidator(within(0.1, 1e4))] = Uniform(uniform=(13.0, 25.0))
-    """Height above the target [m]."""
+    """Height above the target [m]; of camera paths (`video.flight`), too."""
     direction: Annotated[Variation, AfterValidator(within(-2 * math.pi, 2 * math.pi))] = 0.0
     """Heading relative to the target's [rad]."""
     horizontal_bias: Annotated[Variation, AfterValidator(within(-1e4, 1e4))] = 0.0
     """Sideways offset of the tracker, positive left, which moves the target right in view [m]."""
     vertical_bias: Annotated[Variation, AfterValidator(within(-1e4, 1e4))] = 0.0
-    """Forward offset of the tracker, which moves the target down in view [m]."""
+    """Forward offset of the tracker, so that the target appears lower in the picture [m]."""
     velocity: StartVelocity = StartVelocity.TARGET
-    """How fast a flown drone begins; what follows its commands at once begins at rest in any
-    case."""
+    """How fast a flown drone begins: as fast as its target, in steady flight, or hovering, as in
+    the original. What follows its commands at once (a supervised drone, a car) begins at rest in
+    any case. A file of the original means `rest`."""
     warm_up_steps: Annotated[int, Field(ge=0, le=5_000_000)] = 310
     """2 ms steps of traffic before the trackers start."""
     vehicles: Annotated[tuple[VehicleType, ...], Field(min_length=1)] | None = None
@@ -81,9 +83,10 @@ class RewardConfig(Config):
     """Settings of the reward."""
 
     type: RewardType = RewardType.VIEW
-    """Quantity that the reward depends on."""
+    """`view`: by the target's position in the ground area that the camera sees; `distance`: by
+    its distance from the ground point at which the camera looks."""
     mode: RewardMode = RewardMode.CONTINUOUS
-    """Values that the reward takes."""
+    """Whether the built-in reward is continuous or discrete."""
     weight: Weight = 1.0
     """Factor on the built-in reward."""
     terms: Annotated[dict[str, Weight], NAMES_CODE] = Field(default_factory=dict)
@@ -98,7 +101,7 @@ class RewardConfig(Config):
     distance_range: Positive = 7.0
     """Largest rewarded distance [m]."""
     view_scale: Positive = 4.0
-    """Steepness of the continuous view reward, dimensionless."""
+    """Steepness of the continuous view reward, a factor without unit."""
     view_range: Annotated[float, Field(gt=0, le=10)] = 0.7
     """Share of the picture's width and height within which the target is rewarded; above 1, this
     part extends beyond the picture."""
@@ -122,13 +125,16 @@ class DoneConfig(Config):
     distance_error: Positive = 50.0
     """Largest allowed horizontal distance between commanded and true position [m]."""
     total_steps: Annotated[int, Field(ge=1, le=2**31 - 1)] = 1500
-    """2 ms steps in an episode."""
+    """Length of an episode in steps of 2 ms."""
     grace_steps: Steps = 100
     """2 ms steps after a reset during which the episode does not end."""
     no_reward_steps: Steps = 100
     """2 ms steps without reward after which the episode ends."""
     crash: Crash = Crash.ORIGINAL
-    """What counts as a crash, and whether it ends the episode."""
+    """What counts as a crash. `original`: too far from the commanded position, or turning too
+    fast, as in the original, which knows no contacts. `contact`: the body touches a building, a
+    tree with its crown, the ground, a vehicle or another tracker. `end`: the same, and it ends
+    the episode. See Sensors (docs/sensors.md)."""
 
     @model_validator(mode="after")
     def _heights_in_order(self) -> Self:

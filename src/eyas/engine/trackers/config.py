@@ -50,7 +50,7 @@ class WindConfig(Config):
     """The wind, which acts on a flown drone that has a `drag_area`."""
 
     speed: Annotated[Variation, AfterValidator(within(0.0, 60.0))] = 0.0
-    """Mean speed [m/s]."""
+    """Flown drone with `drag_area`: mean speed of the wind [m/s]."""
     direction: Annotated[Variation, AfterValidator(within(-6.3, 6.3))] = 0.0
     """Direction towards which it blows, counter-clockwise from east [rad]."""
     turbulence: Annotated[float, Field(ge=0, le=60)] = 0.0
@@ -65,7 +65,7 @@ class PayloadConfig(Config):
     """What a flown drone carries besides; its controller does not know of it."""
 
     mass: Annotated[float, Field(ge=0, le=20)] = 0.0
-    """[kg]; 0: nothing."""
+    """Flown drone: mass of a payload, unknown to its controller [kg]."""
     position: tuple[Offset, Offset, Offset] = (0.0, 0.0, -0.1)
     """Of its centre of mass: forward, left, up of the middle of the body [m]."""
 
@@ -74,9 +74,10 @@ class BatteryConfig(Config):
     """The battery of a flown drone."""
 
     enabled: bool = False
-    """Whether it sags under load and runs empty, which limits the thrust."""
+    """Flown drone: whether its battery sags and runs empty, which limits its thrust
+    (docs/trackers.md)."""
     charge: Annotated[float, Field(gt=0, le=1)] = 1.0
-    """Charge with which episodes begin, of 1."""
+    """Its charge at the start of an episode, of 1."""
 
 
 class TrackerConfig(Config):
@@ -85,15 +86,18 @@ class TrackerConfig(Config):
     kind: Annotated[TrackerKind | Annotated[str, AfterValidator(_path)], NAMES_CODE] = (
         TrackerKind.DRONE
     )
-    """Kind of the tracker, or a class of your own, `package.module:Class`."""
+    """Kind of the tracker, or a class of your own, `package.module:Class`; see
+    docs/trackers.md."""
     supervised: bool = True
-    """True: the drone follows its commands exactly; False: a flight controller flies it."""
+    """True: the drone follows its commands exactly; False: a flight controller flies it, and it
+    tilts."""
     airframe: AirframeName = AirframeName.M100
     """Body, rotors and controller of a flown drone; all but the original's have motors that need
     time, and drag."""
     flight: Flight = Flight.MENDED
-    """What a flown drone does where a rotor or its gimbal is at a limit; the original's files mean
-    `original`."""
+    """What a flown drone does where a rotor or its gimbal is at a limit: `mended`, rotors keep
+    the torque, and the gimbal looks past straight down; `original`: as in the original's code
+    (docs/trackers.md). A file of the original means `original`."""
     off_centre: bool = False
     """Whether gimbal and lidar pull the centre of mass of a flown drone out of its middle, as in
     the original, whose files mean `true`."""
@@ -105,17 +109,18 @@ class TrackerConfig(Config):
     [s]; 0: the differences of 2 ms, which reach thousands of m/s^2. A flown drone's read the motion
     itself."""
     motor_time_constant: Annotated[float, Field(ge=0, le=1)] = 0.0
-    """Time constant with which the rotors of a flown drone change their speed [s]; 0: the
-    airframe's own, of `m100` at once."""
+    """Flown drone: time constant with which rotors change their speed [s]; `0`: the airframe's
+    own, which of `m100` is at once, as in the original."""
     drag_area: Annotated[float, Field(ge=0, le=10)] = 0.0
-    """Air drag of a flown drone: drag coefficient times area [m^2]; 0: the airframe's
-    own, of `m100` none."""
+    """Flown drone: drag coefficient times area, for the drag of the air [m²]; `0`: the airframe's
+    own, of `m100` none, as in the original."""
     ground_contact: bool = False
     """Whether a flown drone lands on the ground; otherwise it passes through."""
     ground_effect: bool = False
     """Whether the rotors of a flown drone push more near the ground."""
     tells_rotors: bool = False
-    """Whether environments and recordings tell which rates a flown drone asks of its rotors."""
+    """Flown drone: whether environments (`info["rotor_command"]`) and the writer `sensors` tell
+    which rates it asks of its rotors [rad/s]."""
     payload: PayloadConfig = PayloadConfig()
     battery: BatteryConfig = BatteryConfig()
     wind: WindConfig = WindConfig()

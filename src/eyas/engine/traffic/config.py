@@ -91,13 +91,18 @@ class TrafficConfig(Config):
 
     named_by: ClassVar[str] = "source"
     source: Source = Source.RECORDED
-    """Where the traffic comes from."""
+    """`recorded`: a recording is replayed; `live`: SUMO drives in this process, see
+    docs/traffic.md. `traffic=live` is short for it."""
     demand: Demand = Demand.KEEP_ALIVE
-    """When vehicles enter and leave."""
+    """`keep_alive`: all vehicles keep driving (on imported maps, whose streets lead out, some
+    leave and others enter); `respawn`: groups enter, drive a route and leave, and start and brake
+    in an instant, as in the original."""
     drivers: Drivers = Drivers.NORMAL
-    """How drivers behave (keep_alive)."""
+    """`normal`: as SUMO's; `hiding`: now and then one stays for seconds under what hides him from
+    above; `evading`: drivers of cars brake, dash, weave, turn back and hide. The last two need
+    `keep_alive`, see docs/traffic.md."""
     vehicle_type: VehicleType | Mix = VehicleType.PASSENGER
-    """Class of all vehicles, or the share of each class."""
+    """Class of all vehicles, or the share of each class: `{"passenger": 0.8, "bus": 0.2}`."""
     max_vehicles: Annotated[int, Field(ge=1, le=1000)] = 40
     """Largest number of vehicles at a time."""
     max_speed: Annotated[float, Field(ge=0.1, le=100)] = 20.0
@@ -128,7 +133,7 @@ class TrafficConfig(Config):
     working with a recording whose drivers obey them, as the usual ones are on maps with traffic
     lights, and with live traffic there; else amber."""
     lamps: Lamps = Lamps.WORKING
-    """What vehicles signal with brake lamps and indicators."""
+    """`working`: brake lamps are lit and indicators blink, by day too, see docs/traffic.md."""
     recording: str | None = None
     """Path of a recording to replay; None: a shipped or cached recording that fits."""
 

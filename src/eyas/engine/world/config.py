@@ -53,12 +53,15 @@ class WorldConfig(Config):
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
     """Seed of the map: 0 is the canonical map, other seeds give other maps of the same kind."""
     hour: Annotated[float, Field(ge=0.0, le=24.0)] | None = None
-    """Time of day, which moves the sun and its shadows; None: the weather's own sun or moon."""
+    """Time of day [h], which moves the sun and its shadows as on a day in May at 45° north, with
+    dusk, night and dawn; `null`: the weather's own sun or moon."""
     precipitation: Annotated[float, Field(ge=0.0, le=4.0)] = 1.0
-    """Factor on the snow, rain or leaves that fall in the weather."""
+    """How much snow, rain or leaves fall, times as much as the weather's own."""
     wind: WorldWindConfig | None = None
-    """Wind that sways plants and carries what falls; a flown drone with a `drag_area` feels it,
-    too. None: plants are still, and what falls drifts by itself."""
+    """Wind that sways plants and carries what falls (docs/weather.md): mean speed [m/s], and
+    direction towards which it blows, counter-clockwise from east [rad], sampled for each tracker
+    at each reset. A flown drone with a `drag_area` feels it, too; `tracker.wind` then says only
+    how gusty it is. `null`: plants are still, and what falls drifts by itself."""
     smoke: Annotated[int, Field(ge=0, le=16)] = 0
     """Number of plumes of smoke, which rise over buildings chosen by `seed`."""
     spray: bool = False

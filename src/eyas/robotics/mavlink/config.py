@@ -15,7 +15,8 @@ class HilConfig(Config):
     """
 
     thrust_to_weight: Annotated[float, Field(gt=1.0, le=20.0)] = 2.0
-    """Thrust of all rotors at full output over the drone's weight."""
+    """With `--px4` or `--ardupilot`: thrust of all rotors at full output over the drone's
+    weight."""
     speed: Annotated[float, Field(ge=0.0, le=100.0)] = 1.0
     """Most simulated seconds in a second; 0: as many as autopilot and machine can."""
 

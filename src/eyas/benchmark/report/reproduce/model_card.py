@@ -44,7 +44,7 @@ def model_card(name: str) -> str:
             f"## Trained on\n\n{card.trained_on}",
             f"## What it reaches\n\n{_figures(name)}",
             "## Limits\n\n" + "\n".join(f"- {limit}" for limit in card.limits),
-            f"## What it could be used for besides\n\n{harm}",
+            f"## Other possible uses\n\n{harm}",
         )
     )
 
