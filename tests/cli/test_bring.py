@@ -41,11 +41,34 @@ def test_a_place_and_a_track_are_a_ride(tmp_path):
     assert ride.commands[1].startswith("eyas video --map place --set custom=")
 
 
+def test_a_ride_on_a_large_place_imports_the_part_around_it(tmp_path):
+    written(tmp_path, "place.osm", OSM.replace("-0.1285", "0.2"))
+    written(tmp_path, "ride.gpx", GPX)
+    written(tmp_path, "elsewhere.gpx", GPX.replace("51.4993", "48.1"))
+    *_, place, _, ride = bring(
+        [tmp_path / name for name in ("elsewhere.gpx", "place.osm", "ride.gpx")]
+    )
+    assert "larger than 8 km: a part is imported" in " ".join(place.notes)
+    assert "--bbox=" in place.commands[0]
+    assert ride.path.name == "ride.gpx"  # and none of the track that lies elsewhere
+    west, south, east, north = map(float, ride.commands[0].partition("--bbox=")[2].split(","))
+    assert west < -0.1312 < -0.1290 < east
+    assert south < 51.4993 < north
+    assert north - south < 0.01
+
+
 @pytest.mark.parametrize(
     ("name", "content", "what", "command"),
     [
         ("a.csv", "t,x,y\n0,0,0\n5,5,0\n", "1 track, 2 points, 5 s, in metres", "eyas video"),
         ("a.proto", "PROTO A [] { Shape { geometry Box { size 1 1 1 } } }", "a shape", "custom"),
+        (
+            "a_tracks.csv",
+            "track_id,timestamp_ms,agent_type,x,y,psi_rad,length,width\n"
+            + "".join(f"1,{100 * k},car,{k},0,0,4,2\n" for k in range(20)),
+            "1 recorded vehicle of a table INTERACTION, 2 s",
+            "eyas traffic import",
+        ),
         ("a.yaml", CAMERA, "a calibrated camera, 640 x 480, lens brown", "camera.field_of_view"),
         ("a.json", '{"world": {"map": "village"}}', "settings", "--config"),
         ("a.zip", "PK", "a policy of stable-baselines3", "eyas evaluate"),

@@ -10,7 +10,10 @@ import numpy as np
 
 from eyas.engine.core.errors import DataFileError, EyasError
 
+Bounds = tuple[float, float, float, float]  # West, south, east, north [degrees]
+
 _MOST = 200  # Files of a folder that are looked at
+_AROUND = 300.0  # Streets around a ride on a large place [m]
 
 
 class Brought(NamedTuple):
@@ -21,6 +24,7 @@ class Brought(NamedTuple):
     notes: tuple[str, ...] = ()  # What is left out or assumed
     commands: tuple[str, ...] = ()  # What uses it
     settings: dict[str, Any] | None = None  # What `--out` writes
+    area: Bounds | None = None  # Of a place, and of a track that lies on earth
 
 
 class Refused(NamedTuple):
@@ -98,24 +102,36 @@ def _of_file(path: Path) -> Finding:
 
 def _map(path: Path) -> Brought:
     from eyas.maps.osm.driving_side import tagged_side, usual_side
-    from eyas.maps.osm.reader import no_streets, read_osm
+    from eyas.maps.osm.importing import LARGEST, middle_of
+    from eyas.maps.osm.reader import covered, no_streets, read_osm
 
     data = read_osm(path)
-    places = np.array(list(data.places.values()))
-    (west, south), (east, north) = places.min(axis=0), places.max(axis=0)
     streets = sum("highway" in way.tags for way in data.ways.values())
     houses = sum("building" in way.tags for way in data.ways.values())
+    if not streets:
+        raise no_streets(data, str(path))
+    area = west, south, east, north = covered(data, None, str(path))
     what = (
         f"a place of OpenStreetMap, {_many(streets, 'street')}, {_many(houses, 'building')}, "
         f"about latitude {0.5 * (south + north):.4f}, longitude {0.5 * (west + east):.4f}"
     )
-    if not streets:
-        raise no_streets(data, str(path))
     side = tagged_side(data) or usual_side(0.5 * (west + east), 0.5 * (south + north))
-    command = f"eyas maps import {_quoted(path)}"
-    return Brought(
-        path, what, (f"traffic keeps {side}",), (command, f"eyas video --map {_map_name(path)}")
-    )
+    notes, command = [f"traffic keeps {side}"], f"eyas maps import {_quoted(path)}"
+    if max(_metres(area)) > LARGEST:
+        notes.append(f"larger than {LARGEST / 1000:g} km: a part is imported, such as its middle")
+        command += f" --bbox={middle_of(data, area)}"
+    uses = (command, f"eyas video --map {_map_name(path)}")
+    return Brought(path, what, tuple(notes), uses, area=area)
+
+
+def _metres(area: Bounds) -> tuple[float, float]:
+    """Return width and height of an area [m]."""
+    from eyas.engine.world.projection import Projection
+
+    west, south, east, north = area
+    middle = Projection(0.5 * (west + east), 0.5 * (south + north))
+    (x0, y0), (x1, y1) = middle.metres([(west, south), (east, north)]).tolist()
+    return x1 - x0, y1 - y0
 
 
 def _map_name(path: Path) -> str:
@@ -142,7 +158,10 @@ def _track(path: Path) -> Brought:
 
     if path.suffix == ".csv" and form_of(path):
         return _vehicles(path)
-    tracks = tracks_in(path)
+    tracks = [track for track in tracks_in(path) if len(track.place) > 1]
+    if not tracks:
+        raise DataFileError(f"{path}: no track of two points or more")
+    area: Bounds | None = None
     points = sum(len(track.place) for track in tracks)
     first = tracks[0]
     notes = []
@@ -154,6 +173,9 @@ def _track(path: Path) -> Brought:
     where = "in metres, as they are"
     at = ""
     if first.on_earth:
+        whole = np.concatenate([track.place[:, :2] for track in tracks])
+        (x, y), (right, top) = whole.min(axis=0).tolist(), whole.max(axis=0).tolist()
+        area = x, y, right, top
         east, north = (float(each) for each in first.place[:, :2].mean(axis=0))
         where = f"about latitude {north:.4f}, longitude {east:.4f}"
         notes.append("its map must lie there; elsewhere custom.at puts the first point")
@@ -167,7 +189,7 @@ def _track(path: Path) -> Brought:
         f"eyas video --set video.flight={_quoted(path)} --set video.channels=1"
         + (" --set video.flight_at=[0,0,0]" if at else ""),
     )
-    return Brought(path, what, tuple(notes), uses)
+    return Brought(path, what, tuple(notes), uses, area=area)
 
 
 def _vehicles(path: Path) -> Brought:
@@ -268,22 +290,42 @@ def _json(path: Path) -> Brought:
 
 def _rides(findings: list[Finding]) -> Iterator[Brought]:
     """Yield the ride of each track that comes with the map of its place."""
-    maps = [one for one in findings if isinstance(one, Brought) and "OpenStreetMap" in one.what]
+    from eyas.maps.osm.importing import LARGEST
+
+    brought = [one for one in findings if isinstance(one, Brought) and one.area is not None]
+    maps = [one for one in brought if one.what.startswith("a place")]
     for place in maps:
-        for one in findings:
-            if isinstance(one, Brought) and "its map must lie there" in " ".join(one.notes):
-                custom = f'{{"trajectory": {json.dumps(str(one.path))}, "body": "passenger"}}'
-                name = _map_name(place.path)
-                yield Brought(
-                    one.path,
-                    f"a ride on {place.path.name}",
-                    (),
-                    (
-                        f"eyas maps import {_quoted(place.path)}",
-                        f"eyas video --map {name} --set custom={shlex.quote(custom)} "
-                        "--set same_target=true --set video.channels=1",
-                    ),
-                )
+        for one in brought:
+            assert one.area is not None
+            assert place.area is not None
+            if one in maps or not _within(one.area, place.area):
+                continue
+            custom = f'{{"trajectory": {json.dumps(str(one.path))}, "body": "passenger"}}'
+            large = max(_metres(place.area)) > LARGEST
+            part = f" --bbox={_around(one.area)}" if large else ""
+            uses = (
+                f"eyas maps import {_quoted(place.path)}{part}",
+                f"eyas video --map {_map_name(place.path)} --set custom={shlex.quote(custom)} "
+                "--set same_target=true --set video.channels=1",
+            )
+            yield Brought(one.path, f"a ride on {place.path.name}", (), uses)
+
+
+def _within(own: Bounds, area: Bounds) -> bool:
+    """Return whether the middle of an area lies within another."""
+    x, y = 0.5 * (own[0] + own[2]), 0.5 * (own[1] + own[3])
+    return area[0] <= x <= area[2] and area[1] <= y <= area[3]
+
+
+def _around(area: Bounds) -> str:
+    """Return an area with the streets around it, as `--bbox` takes it."""
+    from eyas.engine.world.projection import Projection
+
+    west, south, east, north = area
+    middle = Projection(0.5 * (west + east), 0.5 * (south + north))
+    low, high = middle.metres([(west, south), (east, north)])
+    corners = middle.degrees([low - _AROUND, high + _AROUND])
+    return ",".join(f"{each:.5f}" for each in corners.ravel().tolist())
 
 
 def _quoted(path: Path) -> str:

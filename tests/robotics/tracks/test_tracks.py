@@ -148,6 +148,15 @@ def test_poses_of_odometry_are_put_where_one_says(tmp_path):
     np.testing.assert_allclose(track.time, 0.1 * np.arange(4))
 
 
+def test_a_track_that_is_one_moment_is_left_out_beside_others(tmp_path):
+    moment = 2 * (trackpoints().partition("</trkpt>")[0] + "</trkpt>")
+    segments = f"<trk><trkseg>{moment}</trkseg><trkseg>{trackpoints()}</trkseg></trk>"
+    ((_, track),) = placed(tmp_path, "a.gpx", gpx(segments))
+    assert len(track.time) == 5
+    with pytest.raises(EyasError, match="1 points; a trajectory has two or more"):
+        placed(tmp_path, "b.gpx", gpx(f"<trk><trkseg>{moment}</trkseg></trk>"))
+
+
 def test_a_convoy_keeps_its_distances_in_time(tmp_path):
     files = []
     for name, second in (("a", 0), ("b", 3)):

@@ -64,7 +64,8 @@ def tracks_in(path: Path) -> list[Track]:
     for track in tracks:
         if not (np.abs(track.place[:, :2]) <= (180.0 if track.on_earth else 1e9)).all():
             raise DataFileError(f"{path}: a place is not finite, or nowhere on earth")
-    return tracks
+    # A receiver that lost its signal leaves tracks of one point beside others.
+    return [track for track in tracks if len(track.place) > 1] or tracks
 
 
 def _rising(track: Track) -> Track:

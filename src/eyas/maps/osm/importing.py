@@ -120,7 +120,7 @@ Pictures, films and data sets made from it must show this notice; a data base ma
 offered under the same licence.
 """
 
-_LARGEST = 8000.0  # Longest side of a map [m]
+LARGEST = 8000.0  # Longest side of a map [m]
 _SEAM = 179.0  # Longitude beyond which an area may lie across the date line [degrees]
 _SMALLEST = 40.0
 _MARGIN = 30.0  # Floor beyond the imported area [m]
@@ -217,11 +217,11 @@ def _place(data: OsmData, bounds: Bounds | None, source: str) -> Place:
     projection = Projection(middle, round((south + north) / 2, 7))
     corners = projection.metres([(west, south), (east, south), (east, north), (west, north)])
     width, height = np.ptp(corners, axis=0)
-    if max(width, height) > _LARGEST:
+    if max(width, height) > LARGEST:
         raise DataFileError(
             f"{source}: covers {width / 1000:.1f} x {height / 1000:.1f} km; at most "
-            f"{_LARGEST / 1000:g} km are imported: name a part with --bbox WEST,SOUTH,EAST,NORTH, "
-            f"for example its middle: --bbox {_middle_of(data, limits)}"
+            f"{LARGEST / 1000:g} km are imported: name a part with --bbox WEST,SOUTH,EAST,NORTH, "
+            f"for example its middle: --bbox {middle_of(data, limits)}"
         )
     if min(width, height) < _SMALLEST:
         raise DataFileError(
@@ -235,7 +235,7 @@ def _place(data: OsmData, bounds: Bounds | None, source: str) -> Place:
     return Place(source, limits, meridian, projection, extent, size)
 
 
-def _middle_of(data: OsmData, limits: Bounds) -> str:
+def middle_of(data: OsmData, limits: Bounds) -> str:
     """Return a part of a large area as `--bbox` takes it, in the middle of its streets."""
     nodes = [node for way in data.ways.values() if is_street(way.tags) for node in way.nodes]
     places = np.array([data.places[node] for node in nodes if node in data.places] or [limits[:2]])
@@ -246,7 +246,7 @@ def _middle_of(data: OsmData, limits: Bounds) -> str:
         if inside.any()
         else (0.5 * (west + east), 0.5 * (south + north))
     )
-    dy = 0.3 * _LARGEST / 111_000.0
+    dy = 0.3 * LARGEST / 111_000.0
     dx = dy / float(exact.cos(np.radians(y)))
     x = (x + 180.0) % 360.0 - 180.0
     return ",".join(f"{each:.4f}" for each in (x - dx, y - dy, x + dx, y + dy))
