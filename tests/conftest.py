@@ -1,5 +1,6 @@
 """What all tests share: options, and no skipping where CI says so."""
 
+import ctypes
 import gc
 import logging
 import os
@@ -187,6 +188,7 @@ def memory():
         for name in ("eyas.engine.sim.assets", "eyas.engine.sim.scenes"):
             for each in vars(sys.modules.get(name, sys)).values():
                 getattr(each, "cache_clear", int)()
+        getattr(ctypes.CDLL(None), "malloc_trim", bool)(0)
 
 
 @pytest.fixture(autouse=True)
