@@ -152,6 +152,8 @@ import os, time
 def act(picture):
     time.sleep(float(os.environ.get("EYAS_TEST_SLEEP", 0)))
     return 6
+
+act.env_settings = {"action_repeat": 20, "observation": {"width": 16, "height": 12}}
 """
 
 
@@ -165,7 +167,7 @@ def test_a_killed_evaluation_continues_to_the_same_bytes(tmp_path, monkeypatch):
     run(plan, whole, quiet=True)
     command = [sys.executable, "-m", "eyas.cli.main", "evaluate", "--policy", plan.policy]
     command += ["--episodes", "2", "--batch", "2", "--out", str(killed)]
-    own = {"EYAS_TEST_SLEEP": "0.003", "PYTHONPATH": os.pathsep.join(sys.path)}
+    own = {"EYAS_TEST_SLEEP": "0.015", "PYTHONPATH": os.pathsep.join(sys.path)}
     process = subprocess.Popen(command, stderr=subprocess.DEVNULL, env={**os.environ, **own})
     records = killed / "episodes.jsonl"
     while not (records.exists() and records.read_bytes().count(b"\n") >= 2):

@@ -180,7 +180,7 @@ def test_cars_hardly_ever_come_over_a_kerb(scene, vehicles):
         shapely.union_all([one for one, own in zip(shapes, within, strict=True) if not own]),
     )
     shapely.prepare(road)
-    rows = vehicles.table[::5].ravel()
+    rows = vehicles.table[::20].ravel()  # every two seconds
     length, width, _ = np.array([MODELS[m].size for m in models_of(vehicles.kind[0])]).max(axis=0)
     ahead = KINDS[vehicles.kind[0]].ahead + 0.5 * length * np.array([-1, 0, 1, 1, 0, -1])
     aside = 0.5 * width * np.array([-1, -1, -1, 1, 1, 1])

@@ -59,7 +59,7 @@ SLOW = [
     if name not in QUICK and (name == "simpleway-farm" or "simpleway" not in name)
 ]
 """The others; of the simple maps, whose plans differ by their ground only, one."""
-SOME = ("citystreet", "simpleway-farm")
+SOME = ("citystreet",)
 """Those of them that are not left to a release."""
 ON_GROUND = ("flat", "field")
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy import ndimage, stats
+from scipy import ndimage
 
 from eyas.engine.camera.development import TONE_STEPS, Development, tone_of_sensor
 from eyas.engine.camera.exposure import ExposureConfig, Metering
@@ -105,6 +105,8 @@ def test_the_variance_is_that_of_photon_transfer(level, binning):
 @pytest.mark.parametrize("mean", [0.1, 0.7, 3.0, 11.5])
 @pytest.mark.parametrize("binning", [1, 4])
 def test_few_electrons_are_counted_as_by_poisson(mean, binning):
+    from scipy import stats  # which takes half a second to import
+
     time = mean / binning / electrons_of(1.0, 1.0, 3.0)
     gain = 80.0 * binning
     imager = NOISELESS | {"binning": binning}

@@ -42,6 +42,9 @@ EVERYTHING: dict[str, Any] = {
 }
 """Everything that remembers something."""
 
+FEW = {"max_count": 4, "interval": 10.0, "group_size": 4}
+"""Walkers of which each stays: to make the ways of many short lives takes seconds."""
+
 
 def kinds() -> dict[str, dict[str, Any]]:
     """Settings by name."""
@@ -57,7 +60,7 @@ def kinds() -> dict[str, dict[str, Any]]:
         "everything": EVERYTHING,
         "flown": {**EVERYTHING, **flown},
         "car": {**EVERYTHING, "tracker": {"kind": "car"}},
-        "walker": {"target": "Pedestrian", "env": {"observation": SMALL}},
+        "walker": {"target": "Pedestrian", "objects": FEW, "env": {"observation": SMALL}},
     }
 
 

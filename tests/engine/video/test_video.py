@@ -31,7 +31,7 @@ from eyas.engine.task.config import DoneConfig
 from eyas.engine.task.direction import TargetDirection
 from eyas.engine.video import run as video
 
-# Two trackers, three and a half episodes of 0.2 s each, a frame every 4 ms.
+# Two trackers, three and a half episodes of 0.2 s each, a frame every 8 ms.
 CONFIG = EyasConfig(
     seed=3,
     extras=[],  # else labels are larger than pictures
@@ -40,7 +40,7 @@ CONFIG = EyasConfig(
     done=DoneConfig(total_steps=100, grace_steps=20),
     video=VideoConfig(
         channels=2,
-        fps=250.0,
+        fps=125.0,
         start_time=0.7,
         total_time=0.7,
         warm_up_steps=10,
@@ -138,7 +138,7 @@ def test_a_box_lies_where_the_camera_projects_the_target(recorded):
 def test_frames_come_at_the_asked_rate_and_time(recorded):
     for episode in episodes_of(recorded):
         times = [label["time"] for label in read_labels(episode / "labels.jsonl")]
-        assert np.diff(times) == pytest.approx(0.004)
+        assert np.diff(times) == pytest.approx(0.008)
         assert times[0] >= 0.7
         assert times[-1] <= 1.4
 
@@ -181,7 +181,7 @@ def test_a_killed_recording_continues_to_the_same_bytes(recorded, tmp_path):
 def test_a_later_start_does_without_numba(tmp_path):
     """Which would take half a second to import, and compile for seconds what it keeps nowhere."""
     with_overlay = CONFIG.video.model_copy(  # with an episode that ends, and one that does not
-        update={"overlay": True, "writers": tuple(WRITERS.built_in), "fps": 50.0, "total_time": 0.3}
+        update={"overlay": True, "writers": tuple(WRITERS.built_in), "fps": 25.0, "total_time": 0.3}
     )
     lidar = CONFIG.lidar.model_copy(update={"enabled": True})  # for its writer
     events = CONFIG.camera.events.model_copy(update={"enabled": True})  # for its writer, too
@@ -280,9 +280,9 @@ def test_direction_replaces_the_marks(recorded, tmp_path):
 def directions(labels: list[Label]) -> tuple[np.ndarray, np.ndarray]:
     """Return which way the target goes in each frame but the first, and where that is beyond doubt.
 
-    A frame is two steps; between the limits of turning, one step may differ from the other.
+    A frame is four steps; between the limits of turning, one step may differ from the others.
     """
-    turn = np.diff([label["target_yaw"] for label in labels]) / 2.0
+    turn = np.diff([label["target_yaw"] for label in labels]) / 4.0
     speed = np.linalg.norm([label["target_velocity"] for label in labels], axis=1)[1:]
     along = np.where(speed > 0.5, TargetDirection.STRAIGHT, TargetDirection.STOP)
     aside = np.where(turn > 0.0, TargetDirection.LEFT, TargetDirection.RIGHT)

@@ -25,10 +25,12 @@ from .apart import ApartDevice
 
 SHORT = {"done": {"total_steps": 60, "grace_steps": 0, "no_reward_steps": 28}}
 SMALL = {"width": 24, "height": 20}
+FEW = {"max_count": 4, "interval": 10.0, "group_size": 4}
+"""Walkers of which each stays: to make the ways of many short lives takes seconds."""
 CASES = {
     "plain": ({}, {}),
     "stacked": (
-        {"target": "Pedestrian"},
+        {"target": "Pedestrian", "objects": FEW},
         {"observation": {**SMALL, "colours": "grey", "frames": 3, "layout": "chw"}},
     ),
     "dictionary": (
@@ -38,7 +40,7 @@ CASES = {
             "observation": {**SMALL, "frames": 2, "parts": ["privileged", "image", "sensors"]},
         },
     ),
-    "robot": ({"target": "BB-8"}, {"actions": "shares", "action_repeat": 3}),
+    "robot": ({"target": "BB-8", "objects": FEW}, {"actions": "shares", "action_repeat": 3}),
     "blind": ({"tracker": {"kind": "car"}}, {"observation": {"parts": ["privileged"]}}),
 }
 MODES = tuple(AutoresetMode)

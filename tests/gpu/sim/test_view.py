@@ -22,6 +22,8 @@ from eyas.lanes.device import HostDevice
 
 SIZE = (30, 44)
 SHORT = {"done": {"total_steps": 200, "grace_steps": 0, "no_reward_steps": 80}}
+FEW = {"max_count": 4, "interval": 10.0, "group_size": 4}
+"""Walkers of which each stays: to make the ways of many short lives takes seconds."""
 CASES = {
     "night": {"world": {"weather": "night"}},
     "snow": {
@@ -29,8 +31,8 @@ CASES = {
         "camera": {"field_of_view": {"uniform": [0.6, 1.1]}},
         "light": {"background": {"uniform": [-0.2, 0.2]}},
     },
-    "person": {"target": "Pedestrian"},
-    "robot": {"target": "BB-8"},
+    "person": {"target": "Pedestrian", "objects": FEW},
+    "robot": {"target": "BB-8", "objects": FEW},
 }
 
 
