@@ -79,6 +79,15 @@ def video(
             "truck, trailer, motorcycle.",
         ),
     ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            "--workers",
+            min=1,
+            max=1024,
+            help="Processes; by default half the cores from four on, else one.",
+        ),
+    ] = None,
     resume: Resume = False,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
@@ -112,7 +121,8 @@ def video(
         run as video,  # compiled kernels: slow to import, so only after all checks
     )
 
-    video.run(settings, out, overwrite=overwrite, resume=resume, quiet=quiet)
+    workers = workers or video.default_workers(settings)
+    video.run(settings, out, overwrite=overwrite, resume=resume, quiet=quiet, workers=workers)
 
 
 def serve(

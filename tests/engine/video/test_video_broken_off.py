@@ -6,6 +6,7 @@
 import hashlib
 import os
 import random
+import signal
 import subprocess
 import sys
 import time
@@ -14,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from eyas.engine.camera.config import CameraConfig
+from eyas.engine.core.config import updated
 from eyas.engine.core.errors import OutputError
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import save_settings
@@ -60,10 +62,11 @@ def contents(path: Path) -> dict[str, bytes]:
     }
 
 
-def start(settings: Path, out: Path, *before: str) -> subprocess.Popen[str]:
+def start(settings: Path, out: Path, *before: str, workers: int = 1) -> subprocess.Popen[str]:
     command = [sys.executable, "-m", "eyas.cli.main", "video", "--config", str(settings)]
+    options = ["--out", str(out), "--resume", "--quiet", "--workers", str(workers)]
     return subprocess.Popen(
-        [*before, *command, "--out", str(out), "--resume", "--quiet"],
+        [*before, *command, *options],
         stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
 
@@ -97,6 +100,63 @@ def test_killed_at_any_moment_it_continues_to_the_same_bytes(settings, tmp_path,
             check_whole(out, recorded)
         if attempt % 3 == 2 or attempt == KILLS - 1:
             check_resumed(out, recorded)
+
+
+def test_several_processes_record_the_same_bytes(tmp_path, recorded):
+    video.run(CONFIG, tmp_path / "out", quiet=True, workers=3)
+    assert contents(tmp_path / "out") == recorded
+
+
+@pytest.mark.parametrize(
+    ("cores", "settings", "workers"),
+    [
+        ("8", {"total_time": 60.0}, 4),
+        ("2", {"total_time": 60.0}, 1),
+        ("8", {"total_time": 60.0, "policy": "hover"}, 1),
+        ("8", {"episode_frames": 5000, "channels": 1}, 1),
+        ("8", {"episode_frames": 100, "channels": 2, "episodes": 3}, 2),
+    ],
+)
+def test_processes_are_chosen_by_cores_and_by_what_there_is_to_record(
+    monkeypatch, cores, settings, workers
+):
+    monkeypatch.setenv("NUMBA_NUM_THREADS", cores)
+    assert video.default_workers(updated(EyasConfig(), {"video": settings})) == workers
+
+
+def begun_with_helpers(settings: Path, out: Path) -> tuple[subprocess.Popen[str], list[int]]:
+    """Return a recording whose second process has drawn, and the ids of its own processes."""
+    process = start(settings, out, workers=2)
+    while not list(out.glob("DRONE1/episode0/*.jpeg")) and process.poll() is None:
+        time.sleep(0.001)
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    named = {child: Path(f"/proc/{child}/cmdline").read_bytes() for child in children}
+    return process, [int(child) for child in children if b"spawn_main" in named[child]]
+
+
+def test_interrupted_it_ends_its_processes_and_leaves_nothing_unfinished(
+    settings, tmp_path, recorded
+):
+    process, helpers = begun_with_helpers(settings, tmp_path / "out")
+    assert helpers
+    process.send_signal(signal.SIGINT)
+    err = process.communicate(timeout=60)[1]
+    assert (process.returncode, err.count("\n")) == (130, 1), err
+    assert not any(Path(f"/proc/{helper}").exists() for helper in helpers)
+    assert not list((tmp_path / "out").rglob("*.part"))
+    check_whole(tmp_path / "out", recorded)
+    check_resumed(tmp_path / "out", recorded)
+
+
+def test_a_killed_process_ends_it_in_one_line(settings, tmp_path, recorded):
+    process, helpers = begun_with_helpers(settings, tmp_path / "out")
+    os.kill(helpers[0], signal.SIGKILL)
+    err = process.communicate(timeout=60)[1]
+    assert (process.returncode, err.count("\n")) == (2, 1), err
+    assert "one of the processes was killed" in err
+    assert "--resume" in err
+    check_whole(tmp_path / "out", recorded)
+    check_resumed(tmp_path / "out", recorded)
 
 
 @pytest.mark.parametrize("last", ["version.json", "config.json", "env_config.json"])

@@ -5,12 +5,8 @@
 
 import hashlib
 import logging
-import os
-import signal
-import threading
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
-from multiprocessing import parent_process
 from pathlib import Path
 
 from eyas.datasets.plan import DatasetPart
@@ -25,23 +21,8 @@ from eyas.engine.settings.file import read_settings
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.worlds import together
 from eyas.engine.video.run import recording_rules, run
-from eyas.lanes import limit_threads
 
 PART_FILE = "part.json"  # File of a complete part with its `PartFacts`
-
-
-def begin_worker(threads: int) -> None:
-    """Prepare a process that records: so many threads, and it ends when its parent is killed."""
-    limit_threads(threads)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends it
-    parent = parent_process()
-    assert parent is not None
-
-    def follow() -> None:
-        parent.join()
-        os._exit(1)
-
-    threading.Thread(target=follow, daemon=True).start()
 
 
 def worlds_of(parts: Sequence[DatasetPart]) -> list[DatasetPart]:

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Any, TypeVar
 
-from eyas.datasets.making.parts import begin_worker
 from eyas.datasets.plan import DatasetPart, in_order_of_work
 from eyas.engine.core.errors import EyasError
+from eyas.engine.terminal.helpers import begin_worker
 from eyas.engine.terminal.interrupts import interrupts_held
 
 Result = TypeVar("Result")

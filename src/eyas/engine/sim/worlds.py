@@ -220,6 +220,9 @@ class Worlds:
         """Return worlds, which of them each view shows (None: its own), and their times [s]."""
         worlds, rows = self.of[trackers], None
         if self._any_lasting and later is None:
-            worlds, rows = np.unique(worlds, return_inverse=True)
+            if len(self._members) == 1:
+                worlds, rows = np.zeros(1, np.int32), np.zeros(len(trackers), np.int64)
+            else:
+                worlds, rows = np.unique(worlds, return_inverse=True)
         time = tick[self.leader[worlds]].astype(np.float64) * PHYSICS_STEP
         return worlds, rows, time if later is None else time + later

@@ -154,11 +154,8 @@ class Views:
 def _focal_lengths(size: int, fields: float | NDArray[np.float64]) -> float | NDArray[np.float64]:
     """Return the focal length, or that of each view [pixels]."""
     if isinstance(fields, np.ndarray):
-        # One by one, since numpy's own tangents differ between processors; but views of one lens
-        # are many.
-        values, which = np.unique(fields, return_inverse=True)
-        lengths = np.array([focal_length(size, field) for field in values.tolist()])
-        return lengths[which]
+        # One by one, since numpy's own tangents differ between processors.
+        return np.array([focal_length(size, field) for field in fields.tolist()])
     return focal_length(size, fields)
 
 

@@ -14,12 +14,12 @@ import operator
 import os
 import threading
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import astuple, dataclass
 from pathlib import Path
-from typing import ParamSpec
+from typing import NamedTuple, ParamSpec
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,16 +103,27 @@ class Checksums:
         """
         sums = self._of(episode)
         with self._lock, refusals(self._growing):
-            self._forget(episode)
-            self._known |= sums
-            with self._growing.open("ab") as file:
-                # A line that a kill has cut off must not spoil the next one.
-                file.write(b"\n" * bool(file.tell()) + checksum_lines(sums))
+            self.replace([episode], sums)
+            with self._growing.open("ab", buffering=0) as file:
+                # A line that a kill has cut off must not spoil the next one. All at once, as other
+                # processes append theirs.
+                left = memoryview(b"\n" * bool(file.tell()) + checksum_lines(sums))
+                while left:
+                    left = left[file.write(left) :]
+
+    def of_episodes(self, episodes: Iterable[Path]) -> dict[str, str]:
+        """Return those of some episodes, by the files' names."""
+        inside = tuple(self._inside(episode) for episode in episodes)
+        return {name: own for name, own in self._known.items() if name.startswith(inside)}
+
+    def replace(self, episodes: Iterable[Path], sums: dict[str, str]) -> None:
+        """Replace those of some episodes, which another process has recorded."""
+        old = self.of_episodes(episodes)
+        self._known = {name: own for name, own in self._known.items() if name not in old} | sums
 
     def match(self, episode: Path) -> bool:
         """Return whether the files of an episode are those that were written when it ended."""
-        inside = self._inside(episode)
-        known = {name: digest for name, digest in self._known.items() if name.startswith(inside)}
+        known = self.of_episodes([episode])
         return bool(known) and known == self._of(episode)
 
     def finish(self) -> None:
@@ -124,12 +135,6 @@ class Checksums:
         write_atomic(self._run / CHECKSUMS, checksum_lines(self._known))
         with refusals(self._growing):
             self._growing.unlink(missing_ok=True)
-
-    def _forget(self, episode: Path) -> None:
-        inside = self._inside(episode)
-        self._known = {
-            name: own for name, own in self._known.items() if not name.startswith(inside)
-        }
 
     def _inside(self, episode: Path) -> str:
         return f"{episode.relative_to(self._run).as_posix()}/"
@@ -211,12 +216,35 @@ class WriterThreads:
             thread.shutdown(wait=True)
 
 
+class Share(NamedTuple):
+    """Which episodes one of several processes records, such that each has as many."""
+
+    number: int = 0  # Of the process
+    processes: int = 1
+
+    def has(self, tracker: int, episode: int) -> bool:
+        """Return whether an episode of a tracker is among them."""
+        return (tracker + episode) % self.processes == self.number
+
+
+_ALL = Share()
+
+
+class RecordedShare(NamedTuple):
+    """What another process has recorded."""
+
+    drawn: int  # Frames that were drawn
+    reached: list[ReachedShares]  # See `Recorder`
+    summaries: dict[tuple[int, int], Summary]  # By tracker and number of the episode
+    sums: dict[str, str]  # Checksums by the files' names
+
+
 @dataclass(slots=True)
 class _OpenEpisode:
     """An episode in progress."""
 
     episode: Episode
-    files: EpisodeFiles | None  # None: an earlier run has recorded it completely
+    files: EpisodeFiles | None  # None: an earlier run has recorded it, or another process does
     summary: Summary  # Summary of the frames up to now, or of all frames of an earlier run
 
 
@@ -234,9 +262,11 @@ class Recorder:
     reached: list[ReachedShares]
     """Shares of the drawn frames of each tracker, by the way they show its target."""
 
-    def __init__(self, sim: Simulation, config: EyasConfig, folder: VideoFolder) -> None:
+    def __init__(
+        self, sim: Simulation, config: EyasConfig, folder: VideoFolder, share: Share = _ALL
+    ) -> None:
         count = config.video.channels
-        self._sim = sim
+        self._sim, self._share = sim, share
         self._folder = folder
         self._threads = WriterThreads(count)
         self._checksums = Checksums(folder.path, folder.writers)
@@ -302,7 +332,10 @@ class Recorder:
         writers = self._folder.writers
         field = float(self._sim.snapshot.cameras.field_of_view[tracker])
         lens = self._sim.view.lens_of(tracker) or NO_LENS
-        episode = self._folder.episode(tracker, len(self.episodes[tracker]), field, lens)
+        number = len(self.episodes[tracker])
+        episode = self._folder.episode(tracker, number, field, lens)
+        if not self._share.has(tracker, number):
+            return _OpenEpisode(episode, None, Summary(0))
         found = read_complete(writers, episode.folder)
         if found is not None and self._checksums.match(episode.folder):
             return _OpenEpisode(episode, None, found)
@@ -325,14 +358,45 @@ class Recorder:
                 self.episodes[tracker].append(EndedEpisode(going.episode, going.summary))
             self._open[tracker] = None
 
-    def finish(self) -> None:
-        """End all episodes, and describe the whole recording.
+    def end_all(self) -> None:
+        """End all episodes.
 
         Raises:
             OutputError: Writing failed.
         """
         self.end(np.ones(len(self._open), np.bool_))
         self._threads.finish()
+
+    def recorded(self) -> RecordedShare:
+        """Return what this process has recorded, after all episodes have ended."""
+        own = {
+            (tracker, number): ended
+            for tracker, episodes in enumerate(self.episodes)
+            for number, ended in enumerate(episodes)
+            if self._share.has(tracker, number)
+        }
+        sums = self._checksums.of_episodes(ended.episode.folder for ended in own.values())
+        summaries = {key: ended.summary for key, ended in own.items()}
+        return RecordedShare(self.drawn, self.reached, summaries, sums)
+
+    def join(self, other: RecordedShare) -> None:
+        """Take over what another process has recorded."""
+        self.drawn += other.drawn
+        self.reached = [a.plus(b) for a, b in zip(self.reached, other.reached, strict=True)]
+        folders = []
+        for (tracker, number), summary in other.summaries.items():
+            ended = self.episodes[tracker][number]
+            self.episodes[tracker][number] = ended._replace(summary=summary)
+            folders.append(ended.episode.folder)
+        self._checksums.replace(folders, other.sums)
+
+    def finish(self) -> None:
+        """End all episodes, and describe the whole recording.
+
+        Raises:
+            OutputError: Writing failed.
+        """
+        self.end_all()
         for writer in self._folder.writers:
             writer.finish([ended for own in self.episodes for ended in own])
         self._checksums.finish()

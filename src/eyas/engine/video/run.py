@@ -28,11 +28,13 @@ from eyas.engine.sim.worlds import together
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.task.config import DoneConfig
 from eyas.engine.task.step_line import EpisodeLines, step_line
+from eyas.engine.terminal.helpers import Helpers
 from eyas.engine.video.action import Mover, check_flight, mover_of
 from eyas.engine.video.folder import VideoFolder, check_folder, open_folder
 from eyas.engine.video.formats import with_writers, write_formats, writers_in
 from eyas.engine.video.frame_grid import FrameGrid, RecordingEnd
-from eyas.engine.video.recorder import ReachedShares, Recorder, missed
+from eyas.engine.video.recorder import ReachedShares, RecordedShare, Recorder, Share, missed
+from eyas.lanes import thread_count
 
 _LOG = logging.getLogger("eyas")
 _NEVER = 1e6  # A limit that no tracker reaches
@@ -45,10 +47,13 @@ def run(
     overwrite: bool = False,
     resume: bool = False,
     quiet: bool = False,
+    workers: int = 1,
 ) -> None:
     """Record episodes into `folder`, in the formats of `video.writers`.
 
-    The same settings give the same bytes, also when the recording was interrupted and continued.
+    The same settings give the same bytes, also when the recording was interrupted and continued,
+    and whatever the number of processes: each passes through all steps, but draws and writes some
+    of the episodes only.
 
     Args:
         config: The settings.
@@ -56,6 +61,7 @@ def run(
         overwrite: Whether an existing recording is deleted.
         resume: Whether an existing recording is continued.
         quiet: Whether nothing is printed.
+        workers: Number of processes.
 
     Raises:
         EyasError: Something cannot be built, read or written, or another process records into
@@ -69,9 +75,7 @@ def run(
         chosen_writers(writers_in(config.video.writers))
         check_flight(config)
         check_folder(folder, config, overwrite=overwrite, resume=resume)
-        flown = config
-        if config.original is not None:
-            flown = spoken("original").started(config, config.video.channels)
+        flown = _flown(config)
         sim = _built(flown)
     with closing(sim):
         with originals_named(config):
@@ -80,8 +84,54 @@ def run(
             mover = mover_of(flown, sim)
         with folder_lock(folder, "recording into it"):
             recording = open_folder(folder, config, overwrite=overwrite, resume=resume)
-            _record(sim, flown, mover, recording, quiet=quiet)
+            shares = [Share(number, workers) for number in range(1, workers)]
+            calls = [(_record_share, (config, folder, share)) for share in shares]
+            helpers = Helpers(calls, max(1, thread_count() // workers))
+            _record(sim, flown, mover, recording, helpers, quiet=quiet)
     write_formats(config.video.writers, folder, quiet=quiet)
+
+
+_WORTH = 300  # Frames for which another process is worth its start, 1.7 s of CPU
+
+
+def default_workers(config: EyasConfig) -> int:
+    """Return the number of processes that record, unless the user chooses one: half the cores from
+    four on, if there is so much to record; one with a policy, which would fly in each.
+    """
+    video, cores = config.video, thread_count()
+    if cores < 4 or video.policy is not None:
+        return 1
+    episodes, frames = video.episodes, video.episodes * (video.episode_frames or 0)
+    if video.episode_frames is None:
+        episodes = math.ceil(video.total_time * PHYSICS_RATE / config.done.total_steps)
+        frames = math.ceil(video.total_time * video.fps)
+    most = min(episodes * video.channels, frames * video.channels // _WORTH)
+    return max(1, min(cores // 2, most))
+
+
+def _flown(config: EyasConfig) -> EyasConfig:
+    """Return the settings by which trackers fly."""
+    if config.original is None:
+        return config
+    return spoken("original").started(config, config.video.channels)
+
+
+def _record_share(config: EyasConfig, folder: Path, share: Share) -> RecordedShare:
+    """Record some episodes of a recording that another process has begun."""
+    with originals_named(config):
+        flown = _flown(config)
+        sim = _built(flown)
+        sim.reset()
+        mover = mover_of(flown, sim)
+    with closing(sim):
+        recorder = Recorder(sim, flown, VideoFolder(folder, config), share)
+        try:
+            _run_episodes(sim, flown, (mover, recorder), lambda share, drawn: None, lambda _: None)
+            recorder.end_all()
+        except BaseException:
+            recorder.stop()
+            raise
+        return recorder.recorded()
 
 
 def _built(config: EyasConfig) -> Simulation:
@@ -95,13 +145,28 @@ def _built(config: EyasConfig) -> Simulation:
 
 
 def _record(
-    sim: Simulation, config: EyasConfig, mover: Mover, folder: VideoFolder, *, quiet: bool
+    sim: Simulation,
+    config: EyasConfig,
+    mover: Mover,
+    folder: VideoFolder,
+    helpers: Helpers[RecordedShare],
+    *,
+    quiet: bool,
 ) -> None:
-    recorder = Recorder(sim, config, folder)
+    recorder = Recorder(sim, config, folder, Share(0, 1 + helpers.count))
     progress = RecordingProgress(quiet=quiet)
+
+    def show(share: float, frames: int) -> None:
+        helpers.check()
+        progress.show(share, frames)
+
     try:
-        with progress, step_log(folder.path, folder.trackers, verbose=config.verbose) as log:
-            _run_episodes(sim, config, (mover, recorder), progress, log)
+        with helpers:
+            with progress, step_log(folder.path, folder.trackers, verbose=config.verbose) as log:
+                _run_episodes(sim, config, (mover, recorder), show, log)
+            recorder.end_all()
+            for other in helpers.results():
+                recorder.join(other)
         recorder.finish()
     except BaseException as error:
         recorder.stop()
@@ -183,7 +248,7 @@ def _run_episodes(
     sim: Simulation,
     config: EyasConfig,
     recording: tuple[Mover, Recorder],
-    progress: "RecordingProgress",
+    show: Callable[[float, int], None],  # Gets the share that is done, and the frames drawn
     log: Callable[[Snapshot], None],
 ) -> None:
     count = config.video.channels
@@ -200,7 +265,7 @@ def _run_episodes(
         due = end.wanted(grid.due(tick, episodes.step_count))
         if due.size:
             recorder.take(due, mover.action)
-            progress.show(end.share(tick), recorder.drawn)
+            show(end.share(tick), recorder.drawn)
         ended = end.of_episodes(episodes.done)
         if ended.any():
             recorder.end(ended)
@@ -209,7 +274,7 @@ def _run_episodes(
             sim.reset(ended)
             grid.restart(ended)
             mover.begin(np.flatnonzero(ended), end.longest(tick))
-    progress.show(1.0, recorder.drawn)
+    show(1.0, recorder.drawn)
 
 
 @contextmanager

@@ -1,11 +1,14 @@
 """The pinhole camera; its optical axis passes through the middle of the picture."""
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eyas.lanes import exact
 
 
+@lru_cache  # each picture asks, and cameras seldom change
 def focal_length(width: int, fov: float) -> float:
     """Return the focal length [pixels]; a height and vertical field of view give the vertical one.
 
@@ -16,6 +19,7 @@ def focal_length(width: int, fov: float) -> float:
     return float(0.5 * width / exact.tan(0.5 * fov))
 
 
+@lru_cache
 def field_along(
     fov: float,  # Field of view along two sides [rad]
     ratio: float,  # Length of the other sides over the length of these

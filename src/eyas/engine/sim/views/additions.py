@@ -31,12 +31,14 @@ class TrackerBodies:
         *,
         visible: bool = True,  # Whether trackers see each other at all
     ) -> None:
-        self._part, self._actors = part, actors
         others = [own[own != n] for n, own in enumerate(mates)]
         self.any = visible and any(map(len, others))  # Whether any tracker sees another
         self._others = np.full((len(others), max(map(len, others), default=0)), -1)
         for row, own in zip(self._others, others, strict=True):
             row[: len(own)] = own
+        none = self._others < 0
+        self._parts = np.where(none, -1, part).astype(np.int32)
+        self._ids = np.where(none, -1, ACTOR_OBJECT + actors + self._others).astype(np.int32)
 
     def added(
         self,
@@ -62,13 +64,11 @@ class TrackerBodies:
             pose[..., 3] += trackers.velocity[others] * later[:, None, None]
         classes = np.full((len(chosen), len(self._others)), ObjectClass.ROBOT, np.uint8)
         bodies = others.shape[1]
-        colour = np.ones((*others.shape, 3))
-        object_id = np.where(others < 0, -1, ACTOR_OBJECT + self._actors + others)
         return DrawList(
-            part=_beside(movers.part[rows], np.where(others < 0, -1, self._part)),
-            pose=_beside(movers.pose[rows], pose),
-            colour=_beside(movers.colour[rows], colour),
-            object_id=_beside(movers.object_id[rows], object_id),
+            part=_beside(movers.part[rows], self._parts[chosen]),
+            pose=_beside(movers.pose[rows], pose.astype(np.float32)),
+            colour=_beside(movers.colour[rows], np.ones((*others.shape, 3), np.float32)),
+            object_id=_beside(movers.object_id[rows], self._ids[chosen]),
             object_class=_beside(movers.object_class[rows], classes),
             lamps=_and_dark(movers.lamps[rows] if movers.lamps.size else movers.lamps, bodies),
             spray=movers.spray[rows] if len(movers.spray) else movers.spray,
@@ -76,18 +76,20 @@ class TrackerBodies:
 
 
 def _beside(movers: NDArray[Any], bodies: NDArray[Any]) -> NDArray[Any]:
-    return np.concatenate([movers, bodies.astype(movers.dtype)], axis=1)
+    return np.concatenate([movers, bodies], axis=1)
 
 
 def _and_dark(lamps: NDArray[np.uint8], more: int) -> NDArray[np.uint8]:
     """Return `DrawList.lamps` with so many slots more, which have none."""
-    return np.pad(lamps, ((0, 0), (0, more if lamps.size else 0)))
+    return _beside(lamps, np.zeros((len(lamps), more), np.uint8)) if lamps.size else lamps
 
 
 def _poses(trackers: TrackerState) -> NDArray[np.float64]:
     """Return body to world of all trackers: rotation and translation [m], shape (N, 3, 4)."""
-    columns = [_rotate(trackers.orientation.T, *axis) for axis in np.eye(3).tolist()]
-    return np.stack([*(np.stack(column, axis=-1) for column in columns), trackers.position], -1)
+    poses = np.empty((len(trackers.position), 3, 4))
+    rows = _rotate(trackers.orientation.T[..., None], *np.eye(3))  # of all three axes at once
+    poses[..., :3], poses[..., 3] = np.stack(rows, axis=1), trackers.position
+    return poses
 
 
 @dataclass(frozen=True, slots=True)

@@ -187,9 +187,9 @@ class PictureDrawer:
             bodies = self._snapshot.trackers
             movers = self._bodies.added(chosen, views.world, movers, bodies, later)
             views.world = np.arange(len(chosen), dtype=np.int32)
-        fields, which = np.unique(cameras.field_of_view, return_inverse=True)
-        vertical = np.array([field_along(f, self.aspect) for f in fields.tolist()])
-        views.vertical_field_of_view = vertical[which]
+        views.vertical_field_of_view = np.array(
+            [field_along(field, self.aspect) for field in cameras.field_of_view.tolist()]
+        )
         return views, movers
 
     def _views(
