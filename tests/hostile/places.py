@@ -106,6 +106,7 @@ READERS = {
     "engine.recordings.recording:RecordedFrame.arrays": "arrays",
     "engine.recordings.recording:_table": "dataset",
     "benchmark.plan.latency:_read": "latencies",
+    "benchmark.policies.person:read_log": "flights",
     "benchmark.policies.sandbox:receive": "policy messages",
     "benchmark.policies.foreign:adapt": "onnx",
     "benchmark.policies.onnx:open_session": "onnx",

@@ -791,6 +791,26 @@ def _records(folder, chance, most):
     return of_json(path, read, chance, most)
 
 
+@row("flights")
+def _flights(folder, chance, most):
+    from eyas.benchmark.policies.person import RecordedPeople
+    from eyas.engine.policies.policy import Start
+
+    path, whole = folder / "line.json", folder / "people.flights"
+    first = b'{"env": {"actions": "velocity"}}\n'
+    begun = b'{"attempt": 1, "episode": "a", "pilot": "1", "device": "touch"}\n'
+    actions = [[3, [20.0, 0.0, 0.0, 0.5]], [1, [0.0, 0.0, 0.0, 0.0]]]
+    path.write_text(json.dumps({"attempt": 1, "actions": actions, "left": "", "pace": 1.0}))
+
+    def read() -> None:
+        whole.write_bytes(first + begun + path.read_bytes().replace(b"\n", b" ") + b"\n")
+        people = RecordedPeople(whole, {})
+        people.choose(["a"])
+        people.begin(Start(np.zeros(1, np.int64), lambda: np.zeros((1, 4), np.int32)))
+
+    return of_json(path, read, chance, most)
+
+
 @row("stamp")
 def _stamp(folder, chance, most):
     from eyas.benchmark.plan.plan import EvaluationPlan, stamp

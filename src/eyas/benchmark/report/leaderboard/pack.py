@@ -37,7 +37,11 @@ def pack(folder: Path, out: Path | None = None) -> str:
         raise ConfigError(
             f'{folder / CARD}: missing: an entry says what it is, for example {{"name": "Kestrel"}}'
         )
-    policy, notes = stamp.plan.policy, []
+    plan, notes = stamp.plan, []
+    beside = folder / Path(plan.policy).name
+    if beside.suffix in FILES and beside.is_file():
+        plan = plan.model_copy(update={"policy": str(beside)})
+    policy = plan.policy
     names = [STAMP, EPISODES, RESULT, CARD]
     names += [TIMING] if (folder / TIMING).is_file() else []
     files = {name: folder / name for name in names}
@@ -49,7 +53,7 @@ def pack(folder: Path, out: Path | None = None) -> str:
         notes.append("without a film (extra video)")
     else:
         if not (folder / _MEDIAN).is_file():
-            film(folder, stamp.plan, records)
+            film(folder, plan, records)
         files[_MEDIAN] = folder / _MEDIAN
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:

@@ -15,11 +15,11 @@ from typing import NamedTuple
 
 from eyas.benchmark.episodes.episode import EpisodeSpec, Place
 from eyas.benchmark.flight.policy_runner import fly_batch
-from eyas.benchmark.plan.entry import ResultEntry
+from eyas.benchmark.plan.entry import EntryClass, ResultEntry
 from eyas.benchmark.plan.latency import PROFILES
 from eyas.benchmark.plan.plan import EvaluationPlan, Stamp, batches, opened, stamp
 from eyas.benchmark.policies.shipped import shipped_names
-from eyas.benchmark.policies.table import FILES, POLICIES
+from eyas.benchmark.policies.table import FILES, FLIGHTS, POLICIES
 from eyas.benchmark.records.record import EpisodeRecord
 from eyas.benchmark.records.result import EPISODES
 from eyas.benchmark.report.leaderboard.fresh import LEAST, MOST, fresh_figure
@@ -36,7 +36,7 @@ from eyas.engine.settings.trust import code_of
 
 SHARE = 0.1  # Which part of the episodes is flown again, unless the user says so
 _LARGEST = 1 << 31  # Largest size of a file of records [bytes]
-_DATA = ".onnx"  # The ending of policies that are data: a graph of known operations
+_DATA = (".onnx", FLIGHTS)  # Endings of policies that are data: known operations, or actions
 
 
 class EntryVerdict(StrEnum):
@@ -118,6 +118,7 @@ def _flown_again(folder: Path, share: float, seed: int, fresh: int, *, trust: bo
     content = content_hash(folder)  # before anything is read of it
     made, entry, records = complete_run(folder)
     plan = _flyable(folder, made, entry, trust=trust)
+    people = entry.entry_class is EntryClass.HUMAN  # they cannot be asked for fresh flights
     parts = batches(plan)
     _refuse_others(parts, records)
     chosen = random.Random(seed).sample(range(len(parts)), math.ceil(share * len(parts)))
@@ -135,7 +136,7 @@ def _flown_again(folder: Path, share: float, seed: int, fresh: int, *, trust: bo
         flown=tuple(flown),
         episodes=len(records),
         content=content,
-        fresh=fresh_figure(plan, records, fresh) if fresh else None,
+        fresh=fresh_figure(plan, records, fresh) if fresh and not people else None,
     )
 
 
@@ -169,7 +170,7 @@ def _policy_of(folder: Path, said: str, *, trust: bool) -> str:
     """Return what to open for a policy: its name, or its file in the folder or where it was."""
     if said in POLICIES.built_in or said in shipped_names():
         return said
-    if not trust and Path(said).suffix != _DATA:
+    if not trust and Path(said).suffix not in _DATA:
         raise _UnverifiableError(
             f"its policy {said!r} is code, or a file that holds some: --trust runs it"
         )
