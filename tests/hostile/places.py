@@ -120,6 +120,9 @@ READERS = {
     "robotics.fitting.log:_columns": "drone log",
     "robotics.fitting.log:_rows": "drone log",
     "benchmark.report.leaderboard.submission:read_card": "card",
+    "benchmark.commands:verify": "entry",
+    "benchmark.report.leaderboard.pack:unpacked": "entry",
+    "benchmark.report.leaderboard.pack:_files_in": "entry",
     "benchmark.report.leaderboard.mark:content_hash": "mark",
     "benchmark.report.leaderboard.mark:fitting_mark": "mark",
     "benchmark.report.leaderboard.submission:_text_in": "submission",
@@ -241,6 +244,7 @@ OWN = {
     "lanes.shipped:features": _PACKAGE,
     "benchmark.policies.isolation:close_memory": _PACKAGE,
     "benchmark.report.leaderboard.pack:pack": "copied into an archive as they are, not read",
+    "benchmark.report.leaderboard.verify:write_verdict": "of which the hash is taken, not read",
     "maps.plan.file:plan_of": _CACHE,
     "engine.world.roads.network_file:save_network": _OUTPUT,
 }

@@ -830,6 +830,31 @@ def _card(folder, chance, most):
     return of_json(path, lambda: read_card(folder).model_dump_json().encode(), chance, most)
 
 
+@row("entry")
+def _entry(folder, chance, most):
+    from eyas.benchmark.report.leaderboard import pack
+    from eyas.benchmark.report.leaderboard.submission import read_card
+
+    limited(pack, "_UNPACKED")
+    path = folder / "entry.zip"
+
+    def zipped(size: int) -> bytes:
+        buffer = io.BytesIO()
+        with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+            archive.writestr("card.json", json.dumps({"name": "x"}))
+            with archive.open("mine.onnx", "w", force_zip64=True) as file:
+                for _ in range(size >> 10):
+                    file.write(bytes(1 << 10))
+        return buffer.getvalue()
+
+    def read() -> None:
+        with pack.unpacked(path) as entry:
+            read_card(entry)
+
+    path.write_bytes(zipped(1 << 12))
+    return of_bytes(path, read, chance, most, lambda: zipped(BOMB))
+
+
 @row("mark")
 def _mark(folder, chance, most):
     from eyas.benchmark.report.leaderboard.mark import MARK, fitting_mark

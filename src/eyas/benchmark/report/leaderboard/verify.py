@@ -7,8 +7,9 @@ code are refused, unless the user trusts whoever has sent them in.
 import math
 import random
 import secrets
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from enum import StrEnum
+from hashlib import sha256
 from itertools import accumulate
 from pathlib import Path
 from typing import NamedTuple
@@ -29,8 +30,10 @@ from eyas.benchmark.report.leaderboard.submission import (
     complete_run,
     folders_in,
 )
+from eyas.engine.core.config import Config
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.files import read_limited, write_atomic
+from eyas.engine.core.identity.build import this_build
 from eyas.engine.settings.env import EnvConfig
 from eyas.engine.settings.trust import code_of
 
@@ -54,6 +57,7 @@ class EntryFinding(NamedTuple):
     folder: Path
     verdict: EntryVerdict
     why: str
+    mark: Mark | None = None  # What was flown again, where the records are equal
 
     @property
     def line(self) -> str:
@@ -110,7 +114,46 @@ def verify(
             if mark.fresh is not None:
                 found = f"{found}; {mark.fresh.line}"
                 verdict = verdict if mark.fresh.confirmed else EntryVerdict.UNCONFIRMED
-            yield EntryFinding(path, verdict, found)
+            yield EntryFinding(path, verdict, found, mark)
+
+
+class JudgedRun(Config):
+    """What was found of one evaluation."""
+
+    verdict: EntryVerdict
+    why: str
+    content: str
+    """Hash of its plan and records, see `eyas.benchmark.report.leaderboard.mark.content_hash`."""
+    mark: Mark | None
+    """What was flown again; None: its records are not those of its flights, or cannot be flown."""
+
+
+class VerdictFile(Config):
+    """What a machine says of an entry, to be signed by whoever runs it."""
+
+    file: str
+    """SHA-256 of the entry's zip file; empty for a folder."""
+    build: str
+    """Build of Eyas that has flown it."""
+    runs: tuple[JudgedRun, ...]
+
+
+def write_verdict(path: Path, entry: Path, found: Sequence[EntryFinding]) -> None:
+    """Write what was found of an entry.
+
+    Args:
+        entry: Its zip file, or a folder.
+
+    Raises:
+        EyasError: A file cannot be read or written.
+    """
+    digest = sha256(read_limited(entry, _LARGEST)).hexdigest() if entry.is_file() else ""
+    runs = tuple(
+        JudgedRun(verdict=one.verdict, why=one.why, content=content_hash(one.folder), mark=one.mark)
+        for one in found
+    )
+    verdict = VerdictFile(file=digest, build=this_build().id, runs=runs)
+    write_atomic(path, (verdict.model_dump_json(indent=1) + "\n").encode())
 
 
 def _flown_again(folder: Path, share: float, seed: int, fresh: int, *, trust: bool) -> Mark:
