@@ -1,10 +1,15 @@
 """The long and hard protocols: ten minutes, roofs of all lengths, a mission in stages."""
 
+import runpy
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from eyas.benchmark.episodes import first_fitting, loss_sites
-from eyas.benchmark.episodes.episode import EpisodeSpec, Place
+from eyas.benchmark.episodes.episode import FIRST_SEED, EpisodeSpec, Place
 from eyas.benchmark.episodes.episode_batch import EpisodeBatch
 from eyas.benchmark.episodes.from_above import FromAbove
 from eyas.benchmark.episodes.loss_sites import kind_of, losses_at_sites
@@ -24,6 +29,8 @@ from eyas.engine.sim.cover import cover_of
 from eyas.engine.sim.scenes import load_network, load_scene
 from eyas.engine.traffic.library import TEST_DURATION
 from eyas.engine.world.maps import MAPS
+
+DRAW = runpy.run_path(Path(__file__).parents[2] / "tools" / "draw_towns.py")
 
 LONG_TEN, WIDE, MISSION, COAT = map(PROTOCOLS.get, ("long-10", "recover-wide", "mission", "coat"))
 
@@ -111,6 +118,30 @@ def test_roofs_have_many_lengths_over_unchanged_roads():
     assert min(lengths) < 20.0
     low = roofed.colliders.prism_bottom[len(plain.colliders.prism_bottom) :]
     assert (low > roofed.terrain.floor + 6.0).all()
+
+
+def test_towns_are_fifty_seeds_of_five_kinds_and_part_of_the_hash():
+    names = [name.removeprefix("eyas.maps.covered:").split(":") for name in WIDE.drawn]
+    assert WIDE.maps == WIDE.drawn
+    assert Counter(kind for kind, _ in names) == dict.fromkeys(DRAW["KINDS"], 10)
+    seeds = [int(seed) - TEST_SEEDS for _, seed in names]
+    assert len(set(seeds)) == 50
+    assert min(seeds) >= DRAW["FIRST"]
+    assert replace(WIDE, drawn=WIDE.drawn[1:]).hash != WIDE.hash
+    assert EvaluationPlan(policy="hover", protocol="recover-wide").count == 100
+
+
+@pytest.mark.slow
+@pytest.mark.sumo
+def test_a_town_is_drawn_where_its_losses_can_be_flown_and_no_constant_is_right():
+    name = f"eyas.maps.covered:VILLAGE:{TEST_SEEDS + 102}"
+    assert name in WIDE.drawn
+    rules, flyable = DRAW["RULES"], DRAW["flyable"]
+    assert flyable(rules, name) == ""
+    assert flyable(rules, "desert-bare") == "too few losses below roofs"
+    episodes = WIDE.choose([Place(name, "day", "SUMO_VEHICLE")], WIDE, 1, FIRST_SEED)
+    sites = [episode.variant.partition("@")[2] for episode in episodes]
+    assert len(set(sites)) == len(episodes) == 2
 
 
 def judged(nearest, wanted, *, home):

@@ -3,6 +3,7 @@
 import json
 import shutil
 import zipfile
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
@@ -11,8 +12,8 @@ from typer.testing import CliRunner
 from eyas.benchmark.evaluation import run
 from eyas.benchmark.plan.plan import EvaluationPlan
 from eyas.benchmark.report.leaderboard import page
-from eyas.benchmark.report.leaderboard.mark import KEY_VARIABLE
-from eyas.benchmark.report.leaderboard.pack import pack
+from eyas.benchmark.report.leaderboard.mark import KEY_VARIABLE, content_hash
+from eyas.benchmark.report.leaderboard.pack import pack, unpacked
 from eyas.benchmark.report.leaderboard.submission import read_card, submissions_in
 from eyas.benchmark.report.leaderboard.verify import EntryVerdict, verify
 from eyas.cli.app import app
@@ -444,3 +445,50 @@ def test_one_bad_entry_is_left_out_and_the_page_of_the_others_made(board, caplog
         assert "hover" in page_text  # the machine is not known, but the figures are
     else:
         assert "hover: left out: " in caplog.text
+
+
+def test_the_file_of_an_entry_is_judged_and_the_verdict_names_it(board, tmp_path, eyas_command):
+    write_card(board, CARD)
+    file, verdict = tmp_path / "entry.zip", tmp_path / "verdict.json"
+    pack(board / "hover", file)
+    done = eyas_command("leaderboard", "verify", file, "--verdict", verdict, "--seed", 1)
+    assert done.returncode == 0, done.stderr
+    said = json.loads(verdict.read_text())
+    assert said["file"] == sha256(file.read_bytes()).hexdigest()
+    (judged,) = said["runs"]
+    assert judged["verdict"] == "verified"
+    assert judged["content"] == judged["mark"]["content"] == content_hash(board / "hover")
+    assert len(judged["mark"]["flown"]) == 2
+    lines = lines_of(board / "hover")
+    record = json.loads(lines[0])
+    lines[0] = json.dumps(record | {"path": record["path"] + 0.5}).encode() + b"\n"
+    (board / "hover" / "episodes.jsonl").write_bytes(b"".join(lines))
+    pack(board / "hover", file)
+    done = eyas_command(
+        "leaderboard", "verify", file, "--verdict", verdict, "--seed", 1, "--share", 1
+    )
+    assert done.returncode == 1
+    (judged,) = json.loads(verdict.read_text())["runs"]
+    assert (judged["verdict"], judged["mark"]) == ("not as flown", None)
+
+
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [
+        (["../run.json"], "'../run.json' is no file of an entry"),
+        (["videos/best.mp4"], "is no file of an entry"),
+        (["sub/mine.onnx"], "is no file of an entry"),
+        (["run.json", "run.json"], "a file is there twice"),
+        ([f"{number}.onnx" for number in range(17)], "17 files"),
+        (["setup.py"], "'setup.py' is no file of an entry"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+def test_a_file_with_anything_else_is_refused(tmp_path, names, said):
+    file = tmp_path / "entry.zip"
+    with zipfile.ZipFile(file, "w") as archive:
+        for name in names:
+            archive.writestr(name, "{}")
+    with pytest.raises(EyasError, match="not the file of an entry") as caught, unpacked(file):
+        pass
+    assert said in str(caught.value)

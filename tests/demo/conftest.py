@@ -25,7 +25,7 @@ except ImportError:
 
 # Tests of the page itself run where a browser and what drives it are installed.
 if CHROMIUM is None:
-    collect_ignore = ["test_page.py", "test_hands.py"]
+    collect_ignore = ["test_page.py", "test_hands.py", "test_reference_page.py"]
 
 QUICK = ["--set", "world.map=simpleway-grass", "--set", "traffic.max_vehicles=40"]
 
@@ -46,11 +46,11 @@ REWARD = RewardConfig().model_dump(mode="json", include=set(RewardMessage.model_
 class Served:
     """A running `eyas demo`."""
 
-    def __init__(self, folder, *options):
+    def __init__(self, folder, *options, quick=QUICK):
         command = [sys.executable, "-m", "eyas.cli.main", "demo", "--no-browser", "--port", "0"]
         self.folder = folder
         self.process = subprocess.Popen(
-            [*command, *QUICK, *options],
+            [*command, *quick, *options],
             stdout=subprocess.PIPE,
             text=True,
             cwd=folder,
@@ -77,8 +77,9 @@ def serve(tmp_path_factory):
     """Starts `eyas demo` with options; all are stopped at the end of the file."""
     with contextlib.ExitStack() as stack:
 
-        def start(*options):
-            served = Served(Path(tmp_path_factory.mktemp("demo")), *options)
+        def start(*options, folder=None, **how):
+            folder = folder or Path(tmp_path_factory.mktemp("demo"))
+            served = Served(folder, *options, **how)
             stack.callback(served.process.stdout.close)
             stack.callback(served.stop)
             return served

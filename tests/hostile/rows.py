@@ -848,6 +848,26 @@ def _records(folder, chance, most):
     return of_json(path, read, chance, most)
 
 
+@row("flights")
+def _flights(folder, chance, most):
+    from eyas.benchmark.policies.person import RecordedPeople
+    from eyas.engine.policies.policy import Start
+
+    path, whole = folder / "line.json", folder / "people.flights"
+    first = b'{"env": {"actions": "velocity"}}\n'
+    begun = b'{"attempt": 1, "episode": "a", "pilot": "1", "device": "touch"}\n'
+    actions = [[3, [20.0, 0.0, 0.0, 0.5]], [1, [0.0, 0.0, 0.0, 0.0]]]
+    path.write_text(json.dumps({"attempt": 1, "actions": actions, "left": "", "pace": 1.0}))
+
+    def read() -> None:
+        whole.write_bytes(first + begun + path.read_bytes().replace(b"\n", b" ") + b"\n")
+        people = RecordedPeople(whole, {})
+        people.choose(["a"])
+        people.begin(Start(np.zeros(1, np.int64), lambda: np.zeros((1, 4), np.int32)))
+
+    return of_json(path, read, chance, most)
+
+
 @row("stamp")
 def _stamp(folder, chance, most):
     from eyas.benchmark.plan.plan import EvaluationPlan, stamp
@@ -865,6 +885,31 @@ def _card(folder, chance, most):
     path = folder / CARD
     path.write_text(json.dumps({"name": "x", "authors": ["y"], "link": "https://a.b/c"}))
     return of_json(path, lambda: read_card(folder).model_dump_json().encode(), chance, most)
+
+
+@row("entry")
+def _entry(folder, chance, most):
+    from eyas.benchmark.report.leaderboard import pack
+    from eyas.benchmark.report.leaderboard.submission import read_card
+
+    limited(pack, "_UNPACKED")
+    path = folder / "entry.zip"
+
+    def zipped(size: int) -> bytes:
+        buffer = io.BytesIO()
+        with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+            archive.writestr("card.json", json.dumps({"name": "x"}))
+            with archive.open("mine.onnx", "w", force_zip64=True) as file:
+                for _ in range(size >> 10):
+                    file.write(bytes(1 << 10))
+        return buffer.getvalue()
+
+    def read() -> None:
+        with pack.unpacked(path) as entry:
+            read_card(entry)
+
+    path.write_bytes(zipped(1 << 12))
+    return of_bytes(path, read, chance, most, lambda: zipped(BOMB))
 
 
 @row("mark")

@@ -307,6 +307,8 @@ DEMO = {
     "world": {"map": "desert-bare"},
     "fly": {"policy": "follow"},
     "box": {"box": [0.1, 0.1, 0.2, 0.2]},
+    "ready": {"pilot": "1", "device": "touch"},
+    "leave": {},
 }
 
 
@@ -318,12 +320,13 @@ def feed_demo(simulation, tmp_path, caplog):
     from eyas.demo.run import listen
     from eyas.demo.server import DemoServer
     from eyas.demo.session import Session
+    from eyas.demo.stages import FreeStage
 
     session = Session(updated(AS_FLOWN, SMALL), ("follow",), tmp_path)
     listening, chance, loop = listen("127.0.0.1", 0), random.Random(6), asyncio.new_event_loop()
     port, begun = listening.getsockname()[1], threading.Event()
     server = loop.create_task(
-        DemoServer(session, "127.0.0.1", listening).run(lambda _: begun.set())
+        DemoServer(FreeStage(session), "127.0.0.1", listening).run(lambda _: begun.set())
     )
     thread = threading.Thread(target=lambda: asyncio_run(loop, server))
     thread.start()

@@ -279,7 +279,12 @@ def pack(
 
 @leaderboard.command()
 def verify(
-    folder: _Entries,
+    folder: Annotated[
+        Path,
+        typer.Argument(
+            metavar="DIR", help="Folder with evaluations, at any depth; or the zip file of one."
+        ),
+    ],
     share: Annotated[
         float, typer.Option("--share", help="Part of the episodes; at least one batch.")
     ] = 0.1,
@@ -292,18 +297,25 @@ def verify(
     trust: Annotated[
         bool, typer.Option("--trust", help="Run the code that entries name or bring.")
     ] = False,
+    verdict: Annotated[
+        Path | None, typer.Option("--verdict", help="File with what was found, to be signed.")
+    ] = None,
 ) -> None:
     """Fly some episodes of each evaluation again, and mark those whose records are equal.
 
     The exit code is 1 if the records of one are not those of its flights.
     """
-    from eyas.benchmark.report.leaderboard.verify import EntryVerdict, verify
+    from eyas.benchmark.report.leaderboard.pack import unpacked
+    from eyas.benchmark.report.leaderboard.verify import EntryVerdict, verify, write_verdict
 
     found = []
-    for finding in verify(folder, share=share, seed=seed, fresh=fresh, trust=trust):
-        typer.echo(finding.line)
-        found.append(finding.verdict)
-    if EntryVerdict.DIFFERENT in found:
+    with unpacked(folder) if folder.is_file() else nullcontext(folder) as entries:
+        for finding in verify(entries, share=share, seed=seed, fresh=fresh, trust=trust):
+            typer.echo(finding.line)
+            found.append(finding)
+        if verdict is not None:
+            write_verdict(verdict, folder, found)
+    if EntryVerdict.DIFFERENT in [finding.verdict for finding in found]:
         raise typer.Exit(1)
 
 

@@ -1,6 +1,7 @@
 """`eyas demo`."""
 
-from typing import Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -16,7 +17,11 @@ from eyas.engine.terminal.options import (
     by_policy,
     chosen_file,
     gathered,
+    to_write,
 )
+
+if TYPE_CHECKING:
+    from eyas.benchmark.plan.plan import EvaluationPlan
 
 
 def demo(
@@ -44,12 +49,39 @@ def demo(
         float | None,
         typer.Option("--seconds", min=0.1, help="Stop after this time, with --headless."),
     ] = None,
+    record_for: Annotated[
+        str | None,
+        typer.Option(
+            "--record-for",
+            metavar="PROTOCOL",
+            help="Record flights of people in a protocol, for a leaderboard: each episode once.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None, to_write("Folder of --record-for; by default runs/people-PROTOCOL.")
+    ] = None,
+    episodes: Annotated[
+        int | None,
+        typer.Option(
+            "--episodes", help="With --record-for: for each map, weather, target and direction."
+        ),
+    ] = None,
 ) -> None:
     """Fly a drone by keyboard through any map, in the browser, and watch the reward."""
     from eyas.engine.settings.file import load_settings
 
     if seconds is not None and not headless:
         raise ConfigError("--seconds: only with --headless")
+    if record_for is not None:
+        others = {"--config": config, "--preset": preset, "--set": set_, "--policy": policy}
+        for name, value in {**others, "--headless": headless}.items():
+            if value:
+                raise ConfigError(f"{name}: not together with --record-for: the protocol decides")
+        plan = _to_record(record_for, out, map_name, weather, seed, episodes)
+        _record(plan, host, port, browser=browser)
+        return
+    if out is not None or episodes is not None:
+        raise ConfigError("--out, --episodes: only with --record-for")
     overrides = gathered(set_, map_name, weather, seed)
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
     if config is not None:
@@ -63,4 +95,36 @@ def demo(
     if listening is None:
         demo.run_headless(session, seconds or 10.0, typer.echo)
     else:
-        demo.run_browser(session, host, listening, browser=browser, say=typer.echo)
+        stage = demo.free_flight(session)
+        demo.run_browser(stage, host, listening, browser=browser, say=typer.echo)
+
+
+def _to_record(
+    protocol: str,
+    out: Path | None,
+    map_name: str | None,
+    weather: str | None,
+    seed: int | None,
+    episodes: int | None,
+) -> "EvaluationPlan":
+    """Return the plan of flights of people."""
+    from eyas.demo.reference import plan_for
+
+    choices: dict[str, Any] = {
+        **({"maps": (map_name,)} if map_name is not None else {}),
+        **({"weathers": (weather,)} if weather is not None else {}),
+        **({"seeds": (seed,)} if seed is not None else {}),
+        "episodes": episodes,
+    }
+    return plan_for(protocol, out or Path("runs") / f"people-{protocol}", **choices)
+
+
+def _record(plan: "EvaluationPlan", host: str, port: int, *, browser: bool) -> None:
+    """Let people fly a plan, and say where their flights are."""
+    from eyas.demo import run as demo
+    from eyas.demo.stages import ReferenceStage
+
+    listening = demo.listen(host, port)
+    demo.run_browser(ReferenceStage(plan), host, listening, browser=browser, say=typer.echo)
+    folder = Path(plan.policy).parent
+    typer.echo(f"{folder}: {plan.count} flights; 'eyas leaderboard pack {folder}' makes an entry")

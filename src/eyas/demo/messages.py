@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from eyas.benchmark.policies.person import Device
 from eyas.demo.controls import Control
 from eyas.demo.frame import Coding
 from eyas.engine.core.config import Config, validated
@@ -138,6 +139,17 @@ class BoxMessage(Message):
     box: tuple[Share, Share, Share, Share] | None
 
 
+class ReadyMessage(Message):
+    """Somebody begins the next flight that is recorded for a leaderboard."""
+
+    pilot: Annotated[str, Field(min_length=1, max_length=40)]
+    device: Device
+
+
+class LeaveMessage(Message):
+    """The flight that is recorded is left, and counts as far as it was flown."""
+
+
 _KINDS: dict[str, type[Message]] = {
     "keys": KeysMessage,
     "ack": AckMessage,
@@ -152,6 +164,8 @@ _KINDS: dict[str, type[Message]] = {
     "duel": DuelMessage,
     "record": RecordMessage,
     "box": BoxMessage,
+    "ready": ReadyMessage,
+    "leave": LeaveMessage,
 }
 
 

@@ -36,6 +36,8 @@ def carry_out(session: Session, message: said.Message) -> dict[str, Any] | None:
     duel = session.duel
     if duel is not None and duel.stage != "over" and isinstance(message, _UNFAIR):
         raise ConfigError("a flight against a policy goes on; give it up first")
+    if type(message) not in _ORDERS:
+        raise ConfigError("message: only in 'eyas demo --record-for PROTOCOL'")
     return _ORDERS[type(message)](session, message)
 
 

@@ -8,7 +8,7 @@ import time
 import webbrowser
 from collections.abc import Callable, Coroutine
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from eyas.benchmark.policies.shipped import shipped_names
 from eyas.demo.orders import open_with_a_chase
@@ -17,6 +17,9 @@ from eyas.engine.core.errors import OutputError
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.task.step_line import step_line
 from eyas.lanes.interrupts import let_in, shielded
+
+if TYPE_CHECKING:
+    from eyas.demo.stages import Stage
 
 _LOOK = 0.05  # Time from one look for signals to the next [s]
 
@@ -89,7 +92,7 @@ def listen(host: str, port: int) -> socket.socket:
 
 
 def run_browser(
-    session: Session,  # What is flown
+    stage: "Stage",  # What is flown
     host: str,
     listening: socket.socket,  # Its socket, see `listen`
     *,
@@ -99,14 +102,12 @@ def run_browser(
     """Serve the demo's page until it is interrupted."""
     from eyas.demo.server import DemoServer
 
-    open_with_a_chase(session)
-
     def begun(address: str) -> None:
         say(address)
         if browser and _has_screen():
             webbrowser.open(address)
 
-    run_until_signal(DemoServer(session, host, listening).run(begun))
+    run_until_signal(DemoServer(stage, host, listening).run(begun))
 
 
 def _has_screen() -> bool:
@@ -114,6 +115,14 @@ def _has_screen() -> bool:
     if sys.platform != "linux":
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def free_flight(session: Session) -> "Stage":
+    """Return the stage of a session, which opens with a chase."""
+    from eyas.demo.stages import FreeStage
+
+    open_with_a_chase(session)
+    return FreeStage(session)
 
 
 def run_headless(

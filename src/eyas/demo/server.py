@@ -11,10 +11,8 @@ from functools import cache
 from http import HTTPStatus
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
 from urllib.parse import SplitResult, parse_qs, urlsplit
 
-import numpy as np
 from websockets.asyncio.server import Server as WebSocketServer
 from websockets.asyncio.server import ServerConnection, serve
 from websockets.datastructures import Headers
@@ -22,17 +20,11 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from eyas.demo import messages as said
-from eyas.demo.flight_thread import FlightThread
 from eyas.demo.frame import DemoFrame
-from eyas.demo.orders import BOXES, reward_of, world_now
-from eyas.demo.session import Session
+from eyas.demo.stages import File, Stage
 from eyas.demo.viewers import Viewer, Viewers
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.faults import FaultLog
-from eyas.engine.core.installed import installed_version
-from eyas.engine.settings.dialect import spoken
-from eyas.engine.targets.config import TargetName
-from eyas.engine.world.maps import MAPS
 
 PAGE = Path(str(files("eyas.demo"))) / "page"
 
@@ -43,8 +35,6 @@ _TYPES = {
     ".svg": "image/svg+xml",
 }
 
-File = tuple[str, bytes]  # Its type, and its bytes
-
 
 @cache
 def _names() -> dict[str, Path]:
@@ -53,32 +43,8 @@ def _names() -> dict[str, Path]:
 
 def page_file(path: str) -> File | None:
     """Return a file of the page; None if there is none with this path."""
-    found = _names().get("/index.html" if path == "/" else path)
+    found = _names().get(path)
     return None if found is None else (_TYPES[found.suffix], found.read_bytes())
-
-
-def own_file(path: str, session: Session) -> File | None:
-    """Return what is made on request: `/map.json` and `/env_config.json`.
-
-    Raises:
-        ConfigError: The original's keys cannot express the settings.
-    """
-    if path == "/map.json":
-        return "application/json", json.dumps(_streets(session)).encode()
-    if path == "/env_config.json":
-        text = json.dumps(spoken(path).content_of(session.flight.config), indent=4)
-        return "application/json", f"{text}\n".encode()
-    return None
-
-
-def _streets(session: Session) -> dict[str, Any]:
-    """Return the middle lines of all lanes [m], and the width of each."""
-    network = session.flight.world.assets.scene.network
-    lanes = np.split(np.round(network.lane_points, 1), network.lane_first[1:-1])
-    return {
-        "lanes": [lane.tolist() for lane in lanes],
-        "widths": np.round(network.lane_width, 1).tolist(),
-    }
 
 
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
@@ -157,10 +123,10 @@ _SAFE = {
 
 
 class DemoServer:
-    """Serves one session on a socket of `listen`."""
+    """Serves one stage on a socket of `listen`."""
 
-    def __init__(self, session: Session, host: str, listening: socket.socket) -> None:
-        self._session, self._host, self._listening = session, host, listening
+    def __init__(self, stage: Stage, host: str, listening: socket.socket) -> None:
+        self._stage, self._host, self._listening = stage, host, listening
         self._gate, self._faults = Gate(host), FaultLog()
 
     async def run(self, begun: Callable[[str], None]) -> None:
@@ -170,7 +136,7 @@ class DemoServer:
             begun: Is called with the address, once it answers.
         """
         self.viewers = Viewers(asyncio.get_running_loop())
-        self._thread = FlightThread(self._session, self.viewers)
+        self._thread = self._stage.flying(self.viewers)
         async with serve(
             self._talk,
             sock=self._listening,
@@ -198,15 +164,15 @@ class DemoServer:
         if getattr(request, "method", "GET") != "GET":  # old websockets let nothing else in
             return _text(HTTPStatus.METHOD_NOT_ALLOWED, "only GET is answered", Allow="GET")
         path = path_of(request)
-        page = page_file(path)
-        public = page is not None and path not in ("/", "/index.html")
+        page = page_file(self._stage.page if path == "/" else path)
+        public = page is not None and path != "/" and not path.endswith(".html")
         refused = self._gate.refusal(request, private=not public)
         if refused is not None:
             return _text(HTTPStatus.FORBIDDEN, refused)
         if path == SOCKET:
             return None
         try:
-            found = page or own_file(path, self._session)
+            found = page or self._stage.file(path)
         except ConfigError as error:
             return _text(HTTPStatus.CONFLICT, str(error))
         if found is None:
@@ -221,7 +187,7 @@ class DemoServer:
         if self.viewers.count >= MOST_VIEWERS:
             await connection.close(1013, "there are too many viewers")
             return
-        viewer.tell(self._greeting())
+        viewer.tell(self._stage.greeting())
         self.viewers.add(viewer)
         sending = asyncio.create_task(_send(connection, viewer))
         try:
@@ -248,6 +214,8 @@ class DemoServer:
         """Take a message."""
         if isinstance(message, said.AckMessage):
             viewer.acknowledge(message.frame, 0.001 * message.spent)
+            if self._stage.hears_acks and viewer is self.viewers.pilot:
+                self._thread.put(message)
         elif isinstance(message, said.PicturesMessage):
             viewer.choose(message.coding)
         elif isinstance(message, said.DoMessage) and message.what == "pilot" and viewer.flies:
@@ -256,24 +224,6 @@ class DemoServer:
             self._thread.put(message)
         elif not isinstance(message, said.KeysMessage | said.LookMessage):
             raise ConfigError("message: another page flies; take the controls first")
-
-    def _greeting(self) -> dict[str, Any]:
-        """Return what a page must know to begin."""
-        maps = {}
-        for name in sorted(MAPS.names()):
-            recipe = MAPS.get(name)
-            maps[name] = {"title": recipe.title, "weathers": recipe.weathers}
-        policies = [*self._session.policies, BOXES]
-        most = self._session.flight.config.traffic.max_vehicles
-        told = {
-            "hello": installed_version(),
-            "maps": maps,
-            "policies": policies,
-            "most_vehicles": most,
-            "targets": [name.value for name in TargetName],
-            "lights": list(said.LIGHTS),
-        }
-        return told | reward_of(self._session) | world_now(self._session)
 
 
 async def _send(connection: ServerConnection, viewer: Viewer) -> None:

@@ -16,6 +16,7 @@ from eyas.benchmark.episodes.episode import EpisodeSpec
 from eyas.benchmark.flight.batch_flight import BatchFlight, Watcher
 from eyas.benchmark.plan.latency import Measured, delay_from
 from eyas.benchmark.plan.plan import EvaluationPlan, Stamp, opened, stamp
+from eyas.benchmark.policies.person import RecordedPeople
 from eyas.benchmark.policies.road_search import sighted
 from eyas.benchmark.protocols.protocol import Protocol
 from eyas.benchmark.records.record import EpisodeRecord
@@ -23,6 +24,7 @@ from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.errors import ConfigError, EyasError, MissingExtraError
 from eyas.engine.core.identity.build import this_build
+from eyas.engine.policies.policy import Policy
 from eyas.lanes import limit_threads
 
 Ray = Any  # the module, which has no types
@@ -79,6 +81,7 @@ def fly_batch(
     episodes: list[EpisodeSpec],
     answers: list[float] | None = None,  # Gets how long each call of the policy has taken [s]
     watcher: Watcher | None = None,
+    policy: Policy | None = None,  # Flies in the place of the plan's: a person at the controls
 ) -> Iterator[list[EpisodeRecord]]:
     """Yield the records of a batch, whenever some of its episodes end.
 
@@ -87,7 +90,10 @@ def fly_batch(
     """
     delay = delay_from(plan.latency)
     assert len(episodes) == 1 or not isinstance(delay, Measured)
-    policy, _ = opened(plan)
+    if policy is None:
+        policy, _ = opened(plan)
+    if isinstance(policy, RecordedPeople):
+        policy.choose([episode.name for episode in episodes])
     flight = BatchFlight(episodes, plan.rules, policy, delay)
     solved = solvable(episodes, plan.rules)
     told = {episode.name: can for episode, can in zip(episodes, solved, strict=True)}

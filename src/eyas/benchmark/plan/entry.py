@@ -2,6 +2,7 @@
 
 from enum import StrEnum
 
+from eyas.benchmark.policies.table import PERSON
 from eyas.engine.core.config import Config
 from eyas.engine.policies.policy import Policy
 from eyas.engine.settings.env import (
@@ -21,6 +22,7 @@ class EntryClass(StrEnum):
     DEPTH = "depth"  # Distances of pixels, without noise and whatever the weather
     LIDAR = "lidar"  # Distances that a lidar measures
     BOX = "box"  # Pixels, and the true box in the first picture
+    HUMAN = "human"  # What a person sees in the same pictures, told as `box` and words are
     PRIVILEGED = "privileged"
     """More than a drone can know: the true state, classes of pixels, or code that flies in the
     process of the simulator, and could read it."""
@@ -55,6 +57,8 @@ class ResultEntry(Config):
 def entry_class(policy: Policy, *, beside: bool = False) -> EntryClass:
     """Return the class of a policy: of several that fit, the one that knows most."""
     parts = set(policy.env.observation.parts)
+    if PERSON in policy.told:
+        return EntryClass.HUMAN
     if beside or "truth" in policy.told or parts & _TRUTH:
         return EntryClass.PRIVILEGED
     for part, own in _RANGES.items():

@@ -74,6 +74,8 @@ ORACLES = ("follow", "sighted", "constant-velocity", *WAITERS, "road-graph", "re
 """Policies that know the truth; they fly by seven actions or, where `env.actions` says so, by
 velocities."""
 
+PERSON = "person"  # What `Policy.told` names where people fly
+FLIGHTS = ".flights"  # Ending of files with the flights of people
 FILES = {
     ".onnx": f"{_ROOM}.onnx:load_onnx",
     ".json": f"{_ROOM}.chat_agent:open_chat",
@@ -81,6 +83,7 @@ FILES = {
     ".pt": f"{_ROOM}.torch_file:TorchPolicy",
     ".pth": f"{_ROOM}.torch_file:TorchPolicy",
     ".pt2": f"{_ROOM}.torch_file:TorchPolicy",
+    FLIGHTS: f"{_ROOM}.person:RecordedPeople",
 }
 """What takes a path and changes of `env` and returns a policy, by the file's ending."""
 
@@ -137,9 +140,9 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
 
 
 def fingerprint(said: str) -> str | None:
-    """Return a hash of a policy's file; None if the policy has no file."""
+    """Return a hash of a policy's file; None if it has none, or one that grows as people fly."""
     path = file_of(said) if said in shipped_names() else Path(said)
-    if said in POLICIES.built_in or path.suffix not in FILES:
+    if said in POLICIES.built_in or path.suffix not in FILES or path.suffix == FLIGHTS:
         return None
     return sha256(path.read_bytes()).hexdigest()[:16]
 

@@ -113,6 +113,8 @@ class Protocol:
     elsewhere: bool = False
     """Whether it is not flown on maps on which policies are taught: on those of Eyas only with
     seeds from `eyas.engine.core.rng.TEST_SEEDS` on."""
+    drawn: tuple[str, ...] = ()
+    """Places that were drawn for it, and are part of its hash; empty: places are the user's."""
     columns: tuple[str, ...] = ("cr", "tsr", "flawless", "worst_fifth", "seen", "visible")
     """The figures that are printed; the files have all."""
     rank: str = "tsr"  # The figure by which a leaderboard ranks
@@ -203,6 +205,7 @@ class Protocol:
         content = [meaning, self.directions, self.alike, self.first_box]
         content += [self.variants, self.team] if self.variants else []
         content += [self.recordings] if self.recordings else []
+        content += [self.drawn] if self.drawn else []
         content += [
             astuple(self.envelope),
             self.farthest,

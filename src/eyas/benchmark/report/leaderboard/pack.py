@@ -2,8 +2,12 @@
 
 import io
 import zipfile
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from eyas.benchmark.evaluation import TIMING
 from eyas.benchmark.policies.shipped import shipped_names
@@ -11,10 +15,15 @@ from eyas.benchmark.policies.table import FILES, POLICIES
 from eyas.benchmark.records.result import EPISODES, RESULT, STAMP
 from eyas.benchmark.report.films import FOLDER, film
 from eyas.benchmark.report.leaderboard.submission import CARD, complete_run, read_card
-from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.errors import ConfigError, DataFileError
 from eyas.engine.core.files import read_limited, write_atomic
 
 _LARGEST = 1 << 31  # Largest size of a file of an entry [bytes]
+_UNPACKED = 1 << 29  # Largest size of what is sent in, and of all files in it [bytes]
+_MOST_FILES = 16
+_DAMAGED = (ValueError, RuntimeError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
+"""What reading raises where a zip file is another or damaged."""
+
 _MEDIAN = f"{FOLDER}/median.mp4"
 
 
@@ -37,7 +46,11 @@ def pack(folder: Path, out: Path | None = None) -> str:
         raise ConfigError(
             f'{folder / CARD}: missing: an entry says what it is, for example {{"name": "Kestrel"}}'
         )
-    policy, notes = stamp.plan.policy, []
+    plan, notes = stamp.plan, []
+    beside = folder / Path(plan.policy).name
+    if beside.suffix in FILES and beside.is_file():
+        plan = plan.model_copy(update={"policy": str(beside)})
+    policy = plan.policy
     names = [STAMP, EPISODES, RESULT, CARD]
     names += [TIMING] if (folder / TIMING).is_file() else []
     files = {name: folder / name for name in names}
@@ -49,7 +62,7 @@ def pack(folder: Path, out: Path | None = None) -> str:
         notes.append("without a film (extra video)")
     else:
         if not (folder / _MEDIAN).is_file():
-            film(folder, stamp.plan, records)
+            film(folder, plan, records)
         files[_MEDIAN] = folder / _MEDIAN
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -58,3 +71,43 @@ def pack(folder: Path, out: Path | None = None) -> str:
     target = out or folder.with_name(f"{folder.name}.zip")
     write_atomic(target, packed.getvalue())
     return "; ".join([f"{target}: {len(records)} episodes of '{stamp.plan.protocol}'", *notes])
+
+
+@contextmanager
+def unpacked(path: Path) -> Iterator[Path]:
+    """Yield a folder with what the zip file of an entry holds: the files that `pack` writes.
+
+    Other files are refused, so that none can lie outside the folder.
+
+    Raises:
+        DataFileError: It cannot be read, or is no such file.
+    """
+    with TemporaryDirectory() as made:
+        folder = Path(made) / path.stem
+        (folder / FOLDER).mkdir(parents=True)
+        try:
+            for name, content in _files_in(read_limited(path, _UNPACKED)):
+                (folder / name).write_bytes(content)
+        except _DAMAGED as error:
+            raise DataFileError(f"{path}: not the file of an entry: {error}") from None
+        yield folder
+
+
+def _files_in(data: bytes) -> Iterator[tuple[str, bytes]]:
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        members = archive.infolist()
+        size = sum(member.file_size for member in members)
+        if len(members) > _MOST_FILES or size > _UNPACKED:
+            raise ValueError(f"{len(members)} files of {size} bytes: too many, or too large")
+        if len({member.filename for member in members}) < len(members):
+            raise ValueError("a file is there twice")
+        for member in members:
+            name = member.filename
+            policy = Path(name).suffix in FILES and not {"/", "\\", ":"} & set(name)
+            if name not in (STAMP, EPISODES, RESULT, CARD, TIMING, _MEDIAN) and not policy:
+                raise ValueError(f"{name!r:.80} is no file of an entry")
+            with archive.open(member) as file:
+                content = file.read(member.file_size + 1)  # never more, whatever there is
+            if len(content) != member.file_size:
+                raise ValueError(f"{name}: cut off")
+            yield name, content

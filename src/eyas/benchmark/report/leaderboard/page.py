@@ -29,7 +29,14 @@ FIGURES = (
     "drawn when this machine flew them. What a card says of a policy, and the machine it was timed "
     "on, are its authors' words."
 )
-ORACLES = "They know more than a drone can see, and are not ranked with the others."
+APART = {
+    EntryClass.HUMAN: ("People", "People at the controls, in the pictures that the card names."),
+    EntryClass.PRIVILEGED: (
+        "Oracles",
+        "They know more than a drone can see, and are not ranked with the others.",
+    ),
+}
+"""Classes with a table of their own: its title, and what is said of it."""
 _STYLE = """
 :root { color-scheme: light dark; }
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 75rem; margin: 2rem auto; padding: 0 1rem; }
@@ -88,20 +95,16 @@ def _section(entries: Sequence[Submission]) -> str:
         f"<code>{html.escape(stamp.protocol)}</code>{_whose(stamp)}, "
         f"Eyas {html.escape(stamp.version)}, program <code>{stamp.program}</code></p>\n"
     )
-    oracles = [entry for entry in entries if _is_oracle(entry)]
-    tables = _table([entry for entry in entries if not _is_oracle(entry)])
-    if oracles:
-        tables += f"\n<h3>Oracles</h3>\n<p>{ORACLES}</p>\n{_table(oracles)}"
+    tables = _table([entry for entry in entries if entry.entry.entry_class not in APART])
+    for own, (title, about) in APART.items():
+        if apart := [entry for entry in entries if entry.entry.entry_class is own]:
+            tables += f"\n<h3>{title}</h3>\n<p>{about}</p>\n{_table(apart)}"
     return head + tables
 
 
 def _whose(stamp: Stamp) -> str:
     """Return whose the protocol is, unless it is one of Eyas."""
     return "" if stamp.rules is None else f" of {html.escape(str(stamp.rules))}"
-
-
-def _is_oracle(entry: Submission) -> bool:
-    return entry.entry.entry_class is EntryClass.PRIVILEGED
 
 
 def _table(entries: Sequence[Submission]) -> str:
@@ -144,6 +147,8 @@ def _line(entry: Submission, row: TableRow, columns: Sequence[str]) -> str:
 
 def _fresh(entry: Submission) -> str:
     """Return the figure in episodes that its authors cannot have known."""
+    if entry.entry.entry_class is EntryClass.HUMAN:
+        return "none: people fly once"
     found = None if entry.mark is None else entry.mark.fresh
     if found is None:
         return "none: may be learned by heart"
@@ -164,6 +169,14 @@ def _policy(entry: Submission) -> str:
         said = {"trained on": card.trained_on, "license": card.license, "": card.remarks}
         lines += [html.escape(", ".join(card.authors))] if card.authors else []
         lines += [html.escape(f"{key} {text}".strip()) for key, text in said.items() if text]
+    if card is not None and (own := card.people) is not None:
+        wait = "" if own.picture_ms is None else f", shown after {own.picture_ms:g} ms"
+        lines.append(
+            html.escape(
+                f"people: {own.people}; {own.attempts} flights, {own.left} left early; "
+                f"{', '.join(own.devices)}; pictures {own.picture}{wait}"
+            )
+        )
     if entry.stamp.policy:
         lines.append(f"<code>{html.escape(entry.stamp.policy)}</code>")
     return "<br>".join(lines)

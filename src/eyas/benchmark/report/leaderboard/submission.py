@@ -1,6 +1,7 @@
 """What is sent in to a leaderboard: a folder of records and, beside them, a card of the policy."""
 
 import logging
+import statistics
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, NamedTuple
@@ -8,8 +9,9 @@ from typing import Annotated, NamedTuple
 from pydantic import AfterValidator, Field
 
 from eyas.benchmark.evaluation import TIMING
-from eyas.benchmark.plan.entry import ResultEntry
+from eyas.benchmark.plan.entry import EntryClass, ResultEntry
 from eyas.benchmark.plan.plan import Stamp
+from eyas.benchmark.policies.person import Device, read_log
 from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.benchmark.records.consistency import contradictions
 from eyas.benchmark.records.record import EpisodeRecord
@@ -19,6 +21,8 @@ from eyas.benchmark.statistics.table_rows import figures_of
 from eyas.engine.core.config import Config, validated
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import ConfigError, DataFileError, EyasError
+from eyas.engine.core.files import write_atomic
+from eyas.engine.policies.policy import env_config
 
 _LOG = logging.getLogger("eyas")
 _LARGEST = 1 << 20  # Largest size of the file with the timing [bytes]
@@ -41,6 +45,25 @@ Line = Annotated[str, Field(min_length=1, max_length=300)]
 Link = Annotated[str, Field(max_length=500), AfterValidator(_is_link)]
 
 
+class PeopleCard(Config):
+    """Who has flown an entry of the class `human`, and with what."""
+
+    people: Annotated[int, Field(ge=1)]
+    """How many people have flown."""
+    attempts: Annotated[int, Field(ge=1)]
+    """Flights that were begun; each episode has one."""
+    left: Annotated[int, Field(ge=0)]
+    """Flights that were left before their end."""
+    devices: tuple[Device, ...]
+    picture: Line
+    """Size of the pictures, width and height [pixels]."""
+    picture_ms: Annotated[float, Field(ge=0)] | None = None
+    """Median over the flights of the time from a picture of the simulator until the page has shown
+    it."""
+    slowest: Annotated[float, Field(ge=0)] | None = None
+    """Seconds of a flight in a second, of the slowest: 1 where the machine has kept up."""
+
+
 class ModelCard(Config):
     """What an entry says of itself; a page shows it as text, and nothing of it is checked."""
 
@@ -54,6 +77,8 @@ class ModelCard(Config):
     license: Line | None = None
     """Licence of the weights, for example `MIT`."""
     remarks: Annotated[str, Field(max_length=2000)] | None = None
+    people: PeopleCard | None = None
+    """Of flights of people; `eyas demo --record-for` writes it."""
 
 
 def read_card(folder: Path) -> ModelCard | None:
@@ -72,6 +97,34 @@ def read_card(folder: Path) -> ModelCard | None:
         return validated(ModelCard, values)
     except (ValueError, ConfigError) as error:
         raise DataFileError(f"{path}: not a card: {error}") from None
+
+
+def write_people(folder: Path) -> None:
+    """Write into the card of flights of people who has flown them, and with what.
+
+    Raises:
+        EyasError: A file cannot be read or written.
+    """
+    plan = load_run(folder)[0].plan
+    log = read_log(folder / Path(plan.policy).name)
+    image = env_config(log.env).observation
+    shown, pace = (
+        [value for one in log.flown.values() if (value := getattr(one, name)) is not None]
+        for name in ("picture_ms", "pace")
+    )
+    pilots = {own.pilot for own in log.attempts.values()}
+    people = PeopleCard(
+        people=len(pilots),
+        attempts=len(log.attempts),
+        left=sum(bool(one.left) for one in log.of_episodes.values()),
+        devices=tuple(sorted({own.device for own in log.attempts.values()})),
+        picture=f"{image.width} x {image.height}",
+        picture_ms=round(statistics.median(shown), 1) if shown else None,
+        slowest=min(pace, default=None),
+    )
+    card = read_card(folder) or ModelCard(name=f"People in {plan.protocol}")
+    text = card.model_copy(update={"people": people}).model_dump_json(indent=1, exclude_none=True)
+    write_atomic(folder / CARD, f"{text}\n".encode())
 
 
 class ContradictionError(DataFileError):
@@ -136,7 +189,23 @@ def complete_run(folder: Path) -> tuple[Stamp, ResultEntry, list[EpisodeRecord]]
         raise DataFileError("an episode is there twice")
     for problem in _problems(stamp, records):
         raise ContradictionError(problem)
+    if stamp.entry.entry_class is EntryClass.HUMAN:
+        _refuse_other_attempts(folder / Path(stamp.plan.policy).name, records)
     return stamp, stamp.entry, records
+
+
+def _refuse_other_attempts(path: Path, records: Sequence[EpisodeRecord]) -> None:
+    """Refuse records of people that do not fit to the log of their attempts."""
+    known = read_log(path).of_episodes
+    if known.keys() != {record.name for record in records}:
+        raise ContradictionError(f"{path.name} has attempts at other episodes than were recorded")
+    for record in records:
+        left = known[record.name].left or None
+        if record.error != left:
+            raise ContradictionError(
+                f"episode {record.name!r:.80}: its error is {record.error!r:.80}, by {path.name} "
+                f"{left!r:.80}"
+            )
 
 
 def _problems(stamp: Stamp, records: Sequence[EpisodeRecord]) -> Iterator[str]:

@@ -7,19 +7,20 @@ code are refused, unless the user trusts whoever has sent them in.
 import math
 import random
 import secrets
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from enum import StrEnum
+from hashlib import sha256
 from itertools import accumulate
 from pathlib import Path
 from typing import NamedTuple
 
 from eyas.benchmark.episodes.episode import EpisodeSpec, Place
 from eyas.benchmark.flight.policy_runner import fly_batch
-from eyas.benchmark.plan.entry import ResultEntry
+from eyas.benchmark.plan.entry import EntryClass, ResultEntry
 from eyas.benchmark.plan.latency import PROFILES
 from eyas.benchmark.plan.plan import EvaluationPlan, Stamp, batches, opened, stamp
 from eyas.benchmark.policies.shipped import shipped_names
-from eyas.benchmark.policies.table import FILES, POLICIES
+from eyas.benchmark.policies.table import FILES, FLIGHTS, POLICIES
 from eyas.benchmark.records.record import EpisodeRecord
 from eyas.benchmark.records.result import EPISODES
 from eyas.benchmark.report.leaderboard.fresh import LEAST, MOST, fresh_figure
@@ -29,14 +30,16 @@ from eyas.benchmark.report.leaderboard.submission import (
     complete_run,
     folders_in,
 )
+from eyas.engine.core.config import Config
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.files import read_limited, write_atomic
+from eyas.engine.core.identity.build import this_build
 from eyas.engine.settings.env import EnvConfig
 from eyas.engine.settings.trust import code_of
 
 SHARE = 0.1  # Which part of the episodes is flown again, unless the user says so
 _LARGEST = 1 << 31  # Largest size of a file of records [bytes]
-_DATA = ".onnx"  # The ending of policies that are data: a graph of known operations
+_DATA = (".onnx", FLIGHTS)  # Endings of policies that are data: known operations, or actions
 
 
 class EntryVerdict(StrEnum):
@@ -54,6 +57,7 @@ class EntryFinding(NamedTuple):
     folder: Path
     verdict: EntryVerdict
     why: str
+    mark: Mark | None = None  # What was flown again, where the records are equal
 
     @property
     def line(self) -> str:
@@ -110,7 +114,46 @@ def verify(
             if mark.fresh is not None:
                 found = f"{found}; {mark.fresh.line}"
                 verdict = verdict if mark.fresh.confirmed else EntryVerdict.UNCONFIRMED
-            yield EntryFinding(path, verdict, found)
+            yield EntryFinding(path, verdict, found, mark)
+
+
+class JudgedRun(Config):
+    """What was found of one evaluation."""
+
+    verdict: EntryVerdict
+    why: str
+    content: str
+    """Hash of its plan and records, see `eyas.benchmark.report.leaderboard.mark.content_hash`."""
+    mark: Mark | None
+    """What was flown again; None: its records are not those of its flights, or cannot be flown."""
+
+
+class VerdictFile(Config):
+    """What a machine says of an entry, to be signed by whoever runs it."""
+
+    file: str
+    """SHA-256 of the entry's zip file; empty for a folder."""
+    build: str
+    """Build of Eyas that has flown it."""
+    runs: tuple[JudgedRun, ...]
+
+
+def write_verdict(path: Path, entry: Path, found: Sequence[EntryFinding]) -> None:
+    """Write what was found of an entry.
+
+    Args:
+        entry: Its zip file, or a folder.
+
+    Raises:
+        EyasError: A file cannot be read or written.
+    """
+    digest = sha256(read_limited(entry, _LARGEST)).hexdigest() if entry.is_file() else ""
+    runs = tuple(
+        JudgedRun(verdict=one.verdict, why=one.why, content=content_hash(one.folder), mark=one.mark)
+        for one in found
+    )
+    verdict = VerdictFile(file=digest, build=this_build().id, runs=runs)
+    write_atomic(path, (verdict.model_dump_json(indent=1) + "\n").encode())
 
 
 def _flown_again(folder: Path, share: float, seed: int, fresh: int, *, trust: bool) -> Mark:
@@ -118,6 +161,7 @@ def _flown_again(folder: Path, share: float, seed: int, fresh: int, *, trust: bo
     content = content_hash(folder)  # before anything is read of it
     made, entry, records = complete_run(folder)
     plan = _flyable(folder, made, entry, trust=trust)
+    people = entry.entry_class is EntryClass.HUMAN  # they cannot be asked for fresh flights
     parts = batches(plan)
     _refuse_others(parts, records)
     chosen = random.Random(seed).sample(range(len(parts)), math.ceil(share * len(parts)))
@@ -135,7 +179,7 @@ def _flown_again(folder: Path, share: float, seed: int, fresh: int, *, trust: bo
         flown=tuple(flown),
         episodes=len(records),
         content=content,
-        fresh=fresh_figure(plan, records, fresh) if fresh else None,
+        fresh=fresh_figure(plan, records, fresh) if fresh and not people else None,
     )
 
 
@@ -169,7 +213,7 @@ def _policy_of(folder: Path, said: str, *, trust: bool) -> str:
     """Return what to open for a policy: its name, or its file in the folder or where it was."""
     if said in POLICIES.built_in or said in shipped_names():
         return said
-    if not trust and Path(said).suffix != _DATA:
+    if not trust and Path(said).suffix not in _DATA:
         raise _UnverifiableError(
             f"its policy {said!r} is code, or a file that holds some: --trust runs it"
         )
