@@ -68,12 +68,12 @@ def main() -> int:
 
 
 def unwanted(root: Path) -> Iterator[str]:
-    """Yield a line for each word of the README and of `docs` that another says better.
+    """Yield a line for each word of README, CONTRIBUTING and `docs` that another says better.
 
     Parts that are made from the code, cards of policies and dated notes are left out.
     """
     for place, line, text in _texts(root):
-        if re.match(r"README|docs/(?!lab/|policies/)", place):
+        if re.match(r"README|CONTRIBUTING|docs/(?!lab/|policies/)", place):
             plain = re.sub(f"{MADE}|{NO_PROSE.pattern}", _lines_of, text, flags=NO_PROSE.flags)
             for found in UNWANTED.finditer(plain):
                 at = line + plain.count("\n", 0, found.start())

@@ -92,9 +92,9 @@ class Evaluation(Config):
 
 
 class DaggerConfig(Config):
-    """Dataset aggregation (Ross et al. 2011, arXiv:1011.0686): the network flies, the teacher tells
-    the action that it would choose, and the network learns that from these views and from earlier
-    ones of the block.
+    """Dataset aggregation (Ross et al. 2011, arXiv:1011.0686): the network flies, the teacher
+    labels the action that it would choose, and the network learns that from these views and from
+    earlier ones of the block.
     """
 
     total_timesteps: Count = 100_000
@@ -195,7 +195,7 @@ class TrackerTraining(Config):
 
 
 class WordsTraining(Config):
-    """How the network of a listener is taught, which follows what it is told
+    """How the network of a listener is taught, which follows what words name
     (docs/following-words.md).
     """
 

@@ -27,7 +27,7 @@ averaged [s]."""
 
 
 class AirborneConfig(Config):
-    """What flies through the world and is followed by nobody: distractors in the air."""
+    """What flies through the world and is never a target: distractors in the air."""
 
     birds: Annotated[int, Field(ge=0, le=200)] = 0
     """Birds, in flocks of up to six (docs/weather.md); they are never targets."""

@@ -79,7 +79,7 @@ class CameraConfig(Config):
     """A camera by its data sheets, see docs/camera/exposure.md: its values stand wherever a
     setting below has its default. `null`: none."""
     spectrum: Spectrum = Spectrum.COLOUR
-    """What light its sensor tells apart: `colour`, `grey`, `near-infrared`, of which the last two
+    """What light its sensor sees: `colour`, `grey`, `near-infrared`, of which the last two
     have a sensor with or without `imager`, or `thermal`, whose sensor is `thermal`."""
     thermal: ThermalConfig = ThermalConfig()
     """The sensor of a thermal camera."""

@@ -1,4 +1,4 @@
-"""Settings of a target of one's own."""
+"""Settings of your own target."""
 
 from typing import Annotated, Literal
 
@@ -25,7 +25,7 @@ Angle = Annotated[float, Field(ge=-7, le=7)]
 
 
 class CustomConfig(Config):
-    """A target of one's own, in the place of `target`: `mesh`, `path`, `trajectory`, or a `body`
+    """Your own target, in the place of `target`: `mesh`, `path`, `trajectory`, or a `body`
     with a `behaviour`.
     """
 

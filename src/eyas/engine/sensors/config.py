@@ -34,7 +34,7 @@ class LidarConfig(Config):
     bias: Deviation = 0.0
     """Standard deviation of the constant error of all distances, sampled for each episode [m]."""
     delay_steps: Annotated[int, Field(ge=0, le=500)] = 0
-    """Age of the newest point when it is told, in steps of 2 ms."""
+    """Age of the newest point when it is delivered, in steps of 2 ms."""
     resolution: Annotated[float, Field(ge=0, le=10)] = 0.01
     """Distances are multiples of this [m]; 0: they are not rounded."""
     drop_out: Share = 0.0
@@ -53,15 +53,15 @@ class ReadingConfig(Config):
     """
 
     rate: Annotated[float, Field(gt=0, le=500)] = 500.0
-    """Readings per second [Hz]; in between, the last one is told."""
+    """Readings per second [Hz]; in between, the last one is repeated."""
     noise: Deviation = 0.0
     """Standard deviation of each number of a reading, in its unit."""
     bias: Deviation = 0.0
     """Standard deviation of the constant error that is sampled for each number and episode."""
     delay_steps: Annotated[int, Field(ge=0, le=500)] = 0
-    """Age of a reading when it is told, in steps of 2 ms."""
+    """Age of a reading when it is delivered, in steps of 2 ms."""
     drop_out: Share = 0.0
-    """Probability that a reading is missing, so that the last one is told again."""
+    """Probability that a reading is missing, so that the last one is repeated."""
 
 
 class FurtherSensorConfig(ReadingConfig):

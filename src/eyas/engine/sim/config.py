@@ -61,7 +61,7 @@ class SimConfig(Config):
     light: LightConfig = LightConfig()
     objects: ObjectsConfig = ObjectsConfig()
     custom: CustomConfig | None = None
-    """A target of one's own, in the place of `target`."""
+    """Your own target, in the place of `target`."""
     extras: tuple[ExtraConfig, ...] | None = None
     """Groups that share the world with the targets as distractors; `null`: the pedestrians of the
     map, see docs/behaviours.md."""

@@ -62,7 +62,7 @@ class WindConfig(Config):
 
 
 class PayloadConfig(Config):
-    """What a flown drone carries besides; its controller does not know of it."""
+    """Payload of a flown drone, unknown to its controller."""
 
     mass: Annotated[float, Field(ge=0, le=20)] = 0.0
     """Flown drone: mass of a payload, unknown to its controller [kg]."""

@@ -67,7 +67,7 @@ class Drivers(StrEnum):
     """How drivers behave."""
 
     NORMAL = "normal"  # As SUMO's do
-    HIDING = "hiding"  # Now and then one stays for a few seconds under what hides him from above
+    HIDING = "hiding"  # Now and then one stays for a few seconds under what hides it from above
     EVADING = "evading"
     """Drivers of cars want to be lost: they brake, dash, weave, turn back, and hide."""
 
@@ -98,7 +98,7 @@ class TrafficConfig(Config):
     leave and others enter); `respawn`: groups enter, drive a route and leave, and start and brake
     in an instant, as in the original."""
     drivers: Drivers = Drivers.NORMAL
-    """`normal`: as SUMO's; `hiding`: now and then one stays for seconds under what hides him from
+    """`normal`: as SUMO's; `hiding`: now and then one stays for seconds under what hides it from
     above; `evading`: drivers of cars brake, dash, weave, turn back and hide. The last two need
     `keep_alive`, see docs/traffic.md."""
     vehicle_type: VehicleType | Mix = VehicleType.PASSENGER
@@ -123,7 +123,7 @@ class TrafficConfig(Config):
     """Largest number of routes sampled (respawn)."""
     update_routes: bool = True
     """The original's `rou_update`. A recording is reused while it fits in any case; with False,
-    the line that tells of a new one says that it was made all the same."""
+    a line says that a new one was made all the same."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] | None = None
     """Seed of SUMO and of the routes; None: the seed of the shipped recording."""
     colour: tuple[Unit, Unit, Unit] | None = None

@@ -253,7 +253,7 @@ class Paint:
     """White and yellow paint on roads."""
 
     rule: Literal["grid", "none"] = "grid"
-    """What is painted besides the shapes given here: lines, arrows and crossings as on streets of a
+    """What is painted beside the shapes given here: lines, arrows and crossings as on streets of a
     regular grid, or nothing."""
     centre: Literal["white", "double yellow"] = "white"
     """Line between the two directions of a road."""
@@ -497,7 +497,7 @@ class LampLight:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Walkways:
-    """Lines on which people walk, besides along the asphalt."""
+    """Lines on which people walk, beside those along the asphalt."""
 
     lines: tuple[Annotated[NDArray[np.float64], NumberRows(2, 2)], ...] = ()
     """Crossings, each from kerb to kerb [m]."""
