@@ -131,7 +131,7 @@ def evaluate(
     ] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Fly a policy in the episodes of a protocol, and tell how well it tracks.
+    """Fly a policy in the episodes of a protocol, and measure how well it tracks.
 
     The exit code is 1 if the policy has failed in all episodes.
     """
@@ -232,7 +232,7 @@ def compare(
     ] = False,
     json_: AsJson = False,
 ) -> None:
-    """Tell by how much B differs from A in the episodes that both have flown."""
+    """Compare two evaluations in the episodes that both have flown: how much B differs from A."""
     from eyas.benchmark.records.result import load_run
     from eyas.benchmark.statistics.comparison import differences, refuse_incomparable, text_of
 
@@ -347,7 +347,7 @@ def reproduce(
         raise typer.Exit(1)
 
 
-policies = typer.Typer(help="Tell of the policies that Eyas brings along.", no_args_is_help=True)
+policies = typer.Typer(help="List the policies that come with Eyas, and show what they reach.", no_args_is_help=True)
 
 
 @policies.callback()

@@ -56,7 +56,7 @@ def bench(
 
 
 def doctor(json_: AsJson = False) -> None:
-    """Tell what Eyas finds here: versions, processor, cache, shipped kernels, graphics card."""
+    """Show what Eyas finds here: versions, processor, cache, shipped kernels, graphics card."""
     from eyas.cli.doctor import run
 
     run(as_json=json_)
@@ -261,7 +261,7 @@ def about(
     ] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Tell what Eyas is, and under which licences it and the packages that it needs are."""
+    """Show the licences of Eyas and of the packages that it needs."""
     if as_json:
         typer.echo(json.dumps([part._asdict() for part in parts()], indent=1))
         return

@@ -56,7 +56,7 @@ def check_target(
         str, typer.Option("--map", help="Map on which it is to move.")
     ] = "citystreet",
 ) -> None:
-    """Tell whether a target can be used, and why not; the exit code is 1 if it cannot."""
+    """Check whether a target can be used; the exit code is 1 if it cannot."""
     from eyas.cli.targets.check import check
 
     config = _reading(scale=scale, up=up, most_triangles=most_triangles)
