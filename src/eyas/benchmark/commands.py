@@ -347,7 +347,9 @@ def reproduce(
         raise typer.Exit(1)
 
 
-policies = typer.Typer(help="List the policies that come with Eyas, and show what they reach.", no_args_is_help=True)
+policies = typer.Typer(
+    help="List the policies that come with Eyas, and show what they reach.", no_args_is_help=True
+)
 
 
 @policies.callback()
