@@ -16,7 +16,7 @@ from eyas.benchmark.policies.tracker.detector import Detector
 from eyas.benchmark.policies.tracker.motion import MotionFilter
 from eyas.benchmark.policies.tracker.tracker import Tracker
 from eyas.benchmark.protocols.table import protocol_named
-from eyas.learning.tracking import flights, lessons, training
+from eyas.learning.tracking import driving, flights, lessons, training
 from eyas.learning.tracking.flights import Oracle
 from eyas.learning.tracking.lessons import GROUP, Samples, Shots
 
@@ -133,11 +133,13 @@ def test_what_is_not_seen_is_held():
 
 @pytest.mark.slow
 def test_rows_are_made_once(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(flights, "_STEPS", 400)
+    monkeypatch.setattr(flights, "_STEPS", 120)
     monkeypatch.setattr(flights, "_FLIGHTS", 2)
     monkeypatch.setattr(flights, "_TURN", ("citystreet",))
     monkeypatch.setattr(flights, "WEATHERS", ("day",) * 4)
-    monkeypatch.setattr(TOOL, "PLACES", (("paper", "simpleway-grass", "day", 2),))
+    monkeypatch.setattr(driving, "_LOOKS", 200)
+    monkeypatch.setattr(driving, "_LEAST", 150)
+    monkeypatch.setattr(TOOL, "PLACES", (("paper", "citystreet", "day", 1),))
     words = ["--out", str(tmp_path), "--rows", "no-box", "no-own-flights", "--share", "0.001"]
     monkeypatch.setattr(sys, "argv", ["ablations.py", *words])
     TOOL.main()

@@ -48,7 +48,7 @@ def test_advantages_are_the_weighted_sum_of_later_errors():
 @pytest.mark.parametrize("memory", [False, True])
 def test_an_action_that_is_rewarded_becomes_likely(memory):
     """Two pictures, each with one action that is rewarded."""
-    config = TrainConfig(learning_rate=3e-3, gamma=0.0, hidden=16, memory=memory)
+    config = TrainConfig(learning_rate=8e-3, gamma=0.0, hidden=16, memory=memory)
     shape = NetworkShape(3, 24, 24, 16, memory=memory)
     network = TrackingNetwork(shape)
     generator = torch.Generator().manual_seed(0)
@@ -59,7 +59,7 @@ def test_an_action_that_is_rewarded_becomes_likely(memory):
     data.pictures[:] = (bright * 200 + 20).to(torch.uint8)[None, :, None, None, None]
     good, state = torch.tensor([2, 5])[bright], torch.zeros(8, shape.state)
     learned = Ppo(Learner(network, optimiser, config, generator, TorchThreads(2)), config.ppo)
-    for _ in range(60):
+    for _ in range(15):
         with torch.no_grad():
             logits, value, _ = network(data.pictures[0], state)
         data.actions[:] = torch.multinomial(logits.softmax(1), 8, True, generator=generator).T

@@ -264,6 +264,8 @@ def test_eyas_train_teaches_a_tracker_from_nothing(tmp_path, monkeypatch):
     """The command with short flights, those of later rounds by what earlier ones have taught."""
     monkeypatch.setattr(flights, "_STEPS", 400)
     monkeypatch.setattr(flights, "_FLIGHTS", 2)
+    monkeypatch.setattr(flights, "_TURN", ("citystreet",))
+    monkeypatch.setattr(flights, "WEATHERS", ("day",) * 4)
     monkeypatch.setattr(driving, "_LOOKS", 200)
     monkeypatch.setattr(driving, "_LEAST", 150)
     out = tmp_path / "run"

@@ -45,6 +45,9 @@ SMALL = validated(
 )
 """Three blocks of 64 decisions, the last one at night."""
 
+UNTESTED = updated(SMALL, {"train": {"evaluation": {"every": 0}}})
+"""For what flights of evaluation are no part of."""
+
 
 def files(folder: Path) -> dict[str, bytes]:
     names = ("curve.csv", "policy.onnx", "checkpoint.pt")
@@ -91,7 +94,7 @@ def test_a_run_that_is_interrupted_and_resumed_gives_the_same_bytes(whole, tmp_p
 
 def test_it_stops_after_the_update_that_reaches_the_decisions_and_says_so(tmp_path):
     config = updated(
-        SMALL, {"train": {"stages": [{"total_timesteps": 70}], "updates_per_block": 2}}
+        UNTESTED, {"train": {"stages": [{"total_timesteps": 70}], "updates_per_block": 2}}
     )
     lines = []
     train(config, tmp_path / "run", say=lines.append)
@@ -106,7 +109,7 @@ def test_it_stops_after_the_update_that_reaches_the_decisions_and_says_so(tmp_pa
 
 def test_how_far_it_is_is_told_after_the_first_update(tmp_path):
     lines = []
-    train(SMALL, tmp_path / "run", say=lines.append)
+    train(UNTESTED, tmp_path / "run", say=lines.append)
     assert lines[0] == "192 decisions by ppo, in updates of 32"
     assert lines[1].split()[:4] == ["32", "of", "192", "decisions"]
     assert lines[1].endswith("min left")
@@ -174,7 +177,7 @@ def test_marks_are_those_of_eyas_evaluate(tmp_path):
 
 @pytest.mark.slow
 def test_shards_and_parts_give_the_same_on_any_number_of_threads(tmp_path, monkeypatch):
-    config = updated(SMALL, {"train": {"shards": 2, "parts": 3}})
+    config = updated(UNTESTED, {"train": {"shards": 2, "parts": 3}})
     train(config, tmp_path / "side by side", say=quiet)
     monkeypatch.setattr(TorchThreads, "each", lambda self, do, jobs: [do(job) for job in jobs])
     train(config, tmp_path / "in turn", say=quiet)
@@ -188,12 +191,14 @@ def test_shards_are_of_equal_size():
 
 def test_other_settings_and_other_folders_are_refused(tmp_path, whole):
     train(
-        updated(SMALL, {"train": {"stages": [{"total_timesteps": 1}]}}), tmp_path / "run", say=quiet
+        updated(UNTESTED, {"train": {"stages": [{"total_timesteps": 1}]}}),
+        tmp_path / "run",
+        say=quiet,
     )
     for config, folder, resume, message in [
-        (SMALL, "run", False, "has a run already; continue it with --resume"),
-        (SMALL, "run", True, "has other settings"),
-        (SMALL, "none", True, "there is no run to resume"),
+        (UNTESTED, "run", False, "has a run already; continue it with --resume"),
+        (UNTESTED, "run", True, "has other settings"),
+        (UNTESTED, "none", True, "there is no run to resume"),
     ]:
         with pytest.raises(EyasError, match=message) as caught:
             train(config, tmp_path / folder, resume=resume, say=quiet)
@@ -210,13 +215,13 @@ def test_the_rate_of_learning_falls_linearly_to_its_last_share(tmp_path, monkeyp
 
     monkeypatch.setattr(Algorithm, "descend", told)
     changes = {"stages": [{"total_timesteps": 128}], "method": "ppo", "final_rate": 0.4}
-    train(updated(SMALL, {"train": changes}), tmp_path / "run", say=quiet)
+    train(updated(UNTESTED, {"train": changes}), tmp_path / "run", say=quiet)
     shares = np.array(list(dict.fromkeys(rates))) / rates[0]
     assert shares == pytest.approx([1.0, 0.75, 0.5, 0.4])
 
 
 def test_a_damaged_checkpoint_is_one_line(tmp_path):
-    config = updated(SMALL, {"train": {"stages": [{"total_timesteps": 1}]}})
+    config = updated(UNTESTED, {"train": {"stages": [{"total_timesteps": 1}]}})
     train(config, tmp_path / "run", say=quiet)
     (tmp_path / "run" / "checkpoint.pt").write_bytes(b"no checkpoint")
     with pytest.raises(EyasError, match=r"checkpoint\.pt: not a checkpoint") as caught:
@@ -226,7 +231,7 @@ def test_a_damaged_checkpoint_is_one_line(tmp_path):
 
 
 def test_a_run_of_another_build_is_not_resumed_but_may_be_taught_further(tmp_path):
-    config = updated(SMALL, {"train": {"stages": [{"total_timesteps": 1}]}})
+    config = updated(UNTESTED, {"train": {"stages": [{"total_timesteps": 1}]}})
     train(config, tmp_path / "run", say=quiet)
     path = tmp_path / "run" / "checkpoint.pt"
     saved = torch.load(path, weights_only=True)
@@ -246,7 +251,7 @@ def test_a_run_of_another_build_is_not_resumed_but_may_be_taught_further(tmp_pat
 
 def test_what_another_run_has_learned_is_taught_further(tmp_path):
     first = tmp_path / "first"
-    short = updated(SMALL, {"train": {"stages": [{"total_timesteps": 64}]}})
+    short = updated(UNTESTED, {"train": {"stages": [{"total_timesteps": 64}]}})
     train(short, first, say=quiet)
     rate = {"learning_rate": 1e-30}  # so small that nothing but an exact 0 changes
     second = updated(short, {"seed": 5, "train": rate | {"begin_from": str(first)}})
@@ -261,7 +266,9 @@ def test_what_another_run_has_learned_is_taught_further(tmp_path):
 
 def test_only_a_run_of_the_same_network_can_be_taught_further(tmp_path):
     train(
-        updated(SMALL, {"train": {"stages": [{"total_timesteps": 1}]}}), tmp_path / "run", say=quiet
+        updated(UNTESTED, {"train": {"stages": [{"total_timesteps": 1}]}}),
+        tmp_path / "run",
+        say=quiet,
     )
     for folder, other, message in [
         ("none", {}, r"none/checkpoint\.pt: no such file"),
@@ -269,7 +276,7 @@ def test_only_a_run_of_the_same_network_can_be_taught_further(tmp_path):
     ]:
         learning = other | {"begin_from": str(tmp_path / folder)}
         with pytest.raises(EyasError, match=message):
-            train(updated(SMALL, {"train": learning}), tmp_path / "new", say=quiet)
+            train(updated(UNTESTED, {"train": learning}), tmp_path / "new", say=quiet)
         assert not (tmp_path / "new").exists()
 
 
@@ -334,7 +341,7 @@ def test_a_wrong_later_stage_is_refused_at_once(settings, message, tmp_path):
 
 
 def test_a_network_with_memory_learns_too(tmp_path):
-    config = updated(SMALL, {"train": {"memory": True, "stages": [{"total_timesteps": 64}]}})
+    config = updated(UNTESTED, {"train": {"memory": True, "stages": [{"total_timesteps": 64}]}})
     train(config, tmp_path / "run", say=quiet)
     saved = torch.load(tmp_path / "run" / "checkpoint.pt", weights_only=True)
     assert saved["network"]["memory.weight_hh"].shape == (48, 16)

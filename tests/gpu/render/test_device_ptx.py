@@ -128,14 +128,14 @@ FLOWN, CAR, EQUIPPED = (
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("tracker", "mounted", "kernel"),
-    [
-        (DRONE, False, "fly"),
+    [  # what is flown with equipment calls all that is flown without
         (DRONE, False, "carry"),
         (DRONE, True, "begin"),
-        (FLOWN, False, "begin"),
-        (FLOWN, True, "fly"),
         (CAR, False, "fly"),
         (EQUIPPED, False, "fly"),
+        pytest.param(DRONE, False, "fly", marks=pytest.mark.thorough),
+        pytest.param(FLOWN, False, "begin", marks=pytest.mark.thorough),
+        pytest.param(FLOWN, True, "fly", marks=pytest.mark.thorough),
     ],
 )
 def test_the_step_compiles_for_cuda(tracker, mounted, kernel):
