@@ -79,8 +79,8 @@ class _EndedError(EyasError):
 class ReferenceThread:
     """Flies the episodes of a plan with whoever has the controls; see `FlightThread`.
 
-    Args:
-        say: Prints a line.
+    Attributes:
+        stage: What pages are told: which flight is made, is ready, or that all are over.
     """
 
     def __init__(self, plan: EvaluationPlan, audience: Audience) -> None:
@@ -95,7 +95,7 @@ class ReferenceThread:
         self._frames = 0
         self._sent: dict[int, float] = {}
         self._delays: list[float] = []
-        self.stage: dict[str, Any] = {"stage": "making"}  # What pages are told
+        self.stage: dict[str, Any] = {"stage": "making"}
 
     def put(self, message: said.Message) -> None:
         """Take what the pilot says; may be called in any thread."""
@@ -131,6 +131,8 @@ class ReferenceThread:
         """Yield the record of each episode, see `Runner`."""
         total = plan.count
         for number, part in enumerate(parts, total - len(parts) + 1):
+            if self._stopped:
+                raise _EndedError
             log = read_log(self._path)
             if part[0].name in log.of_episodes:  # begun, but not recorded, when the demo ended
                 yield from fly_batch(plan, part)
