@@ -71,6 +71,12 @@ def test_a_ride_on_a_large_place_imports_the_part_around_it(tmp_path):
         ),
         ("a.yaml", CAMERA, "a calibrated camera, 640 x 480, lens brown", "camera.field_of_view"),
         ("a.json", '{"world": {"map": "village"}}', "settings", "--config"),
+        (
+            "agent.json",
+            '{"url": "http://localhost:8000/v1", "model": "m"}',
+            "a model of language and vision",
+            "eyas evaluate --policy",
+        ),
         ("a.zip", "PK", "a policy of stable-baselines3", "eyas evaluate"),
     ],
 )

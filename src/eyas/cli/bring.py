@@ -282,6 +282,16 @@ def _json(path: Path) -> Brought:
     if isinstance(whole, dict) and {"roads", "layers"} & whole.keys():
         command = f"eyas video --map {_quoted(path)}"
         return Brought(path, "a plan of a map", (), (f"eyas maps check {_quoted(path)}", command))
+    if isinstance(whole, dict) and {"url", "model"} <= whole.keys():
+        from eyas.benchmark.policies.table import open_policy
+
+        open_policy(str(path), {})  # which sends nothing yet
+        return Brought(
+            path,
+            "a model of language and vision behind an endpoint",
+            (f"it is sent pictures: {whole['url']}",),
+            (f"eyas evaluate --policy {_quoted(path)} --protocol referring",),
+        )
     settings = load_settings(path, (), trust=True)
     notes = (f"map {settings.world.map}, weather {settings.world.weather}, "
              f"target {settings.target}",)  # fmt: skip
