@@ -287,6 +287,9 @@ class TrainConfig(Section):
     device: DeviceName | None = None
     """Where environments and network are: `cuda`, `cuda:1` and so on are graphics processors of
     NVIDIA; `host` does on this processor what these would do, for tests. None: this processor."""
+    loggers: Annotated[tuple[str, ...], NAMES_CODE] = ("tensorboard",)
+    """Where the curves go beside `curve.csv`: `tensorboard`, if it is installed, `wandb` (Weights &
+    Biases), `mlflow`, or your own, `package.module:Class`."""
     shards: Annotated[int, Field(ge=1, le=1024)] = 1
     """Parts into which the environments are split, with random numbers of their own. One is fastest
     in one process; the result does not depend on where the shards run."""

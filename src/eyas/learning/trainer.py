@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from copy import deepcopy
 from pathlib import Path
 from typing import NamedTuple
@@ -31,6 +31,7 @@ from eyas.learning.algorithm import Learner, phases_of
 from eyas.learning.checkpoint import RunFolder, Stateful, TrainingProgress
 from eyas.learning.config import ALGORITHMS, NetworkKind, NumberType, Stage, TrainConfig
 from eyas.learning.export import export
+from eyas.learning.loggers import LOGGERS, Loggers
 from eyas.learning.network import (
     AnyNetwork,
     NetworkShape,
@@ -80,6 +81,8 @@ def train(
     """
     run = _Run(config, RunFolder(folder), say, make_shards)
     run.files.begin(config, resume=resume)
+    settings = config.model_dump(mode="json")
+    run.loggers = Loggers(TrainConfig.of(config).loggers, folder, settings)
     learned = TrainConfig.of(config)
     each = learned.update_decisions
     for number, stage in enumerate(learned.stages):
@@ -94,8 +97,11 @@ def train(
     if run.progress.stage < len(learned.stages):  # environments take a while to be made
         left = learned.run_decisions - run.progress.decisions
         say(f"{left:,} decisions by {learned.method}, in updates of {each:,}")
-    while run.progress.stage < len(learned.stages):
-        run.stage()
+    try:
+        while run.progress.stage < len(learned.stages):
+            run.stage()
+    finally:
+        run.loggers.end()
     return run.files.policy
 
 
@@ -134,7 +140,7 @@ class _Run:
         own = (ALGORITHMS.path(each.name) for each in phases)
         self.code = [str(origin_of(path)) for path in own if path is not None]
         self.progress = TrainingProgress()
-        self._tensorboard = TensorBoardWriter(files.path / "tensorboard")
+        self.loggers = Loggers((), files.path, {})
         self._total = learned.run_decisions
         self._told = -math.inf  # When it was last told how it goes [s]
 
@@ -238,12 +244,14 @@ class _Run:
             f"{rate:,.0f} decisions/s ({physics / 500:,.0f} s of flight per s)  "
             f"{left / 60:.1f} min left"
         )
-        self._tensorboard.add(progress.decisions, {**row, "decisions_per_second": rate})
+        self.loggers.add(progress.decisions, {**row, "decisions_per_second": rate})
 
 
 def _refuse_later_errors(config: EyasConfig) -> None:
     """Refuse at once what would end the run only after minutes or hours."""
     evaluation_episodes(config)
+    for name in TrainConfig.of(config).loggers:
+        LOGGERS.get(name)
     _refuse_test_seeds(config, "")
     for number, stage in enumerate(TrainConfig.of(config).stages):
         changed = updated(config, stage.changes(config.world))
@@ -343,25 +351,3 @@ def evaluation_episodes(config: EyasConfig) -> tuple[list[EpisodeSpec], Protocol
         MAPS.get(world.map).light(weather)
     places = [Place(world.map, weather, config.target) for weather in weathers]
     return episodes_of(places, protocol.directions, asked.episodes, asked.seed), protocol
-
-
-class TensorBoardWriter:
-    """Writes numbers for TensorBoard, if it is installed."""
-
-    def __init__(self, folder: Path) -> None:
-        try:
-            from torch.utils.tensorboard import SummaryWriter
-        except ImportError:  # curve.csv has the same
-            self._writer = None
-        else:
-            self._writer = SummaryWriter
-        self._folder = folder
-
-    def add(self, decisions: int, values: Mapping[str, float]) -> None:
-        """Add a point to each curve."""
-        if self._writer is None:
-            return
-        with self._writer(str(self._folder), purge_step=decisions) as writer:
-            for name, value in values.items():
-                if name != "decisions":
-                    writer.add_scalar(name, value, decisions)
