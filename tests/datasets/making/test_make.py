@@ -33,7 +33,7 @@ def test_a_killed_one_is_continued_to_the_same_bytes(
     assert not (out / "dataset.json").exists()
     with pytest.raises(DataFileError, match="not a recording"):
         eyas.load(out)
-    make(plan, out, Making(resume=True, workers=2))
+    make(plan, out, Making(resume=True, workers=1))
     assert contents(out) == contents(made)
 
 

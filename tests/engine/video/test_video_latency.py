@@ -44,6 +44,11 @@ def recorded(folder, **changes):
     return labels, pictures, [[row.split(",")[1:] for row in table] for table in rows]
 
 
+@pytest.fixture(scope="module")
+def now(tmp_path_factory):
+    return recorded(tmp_path_factory.mktemp("now"))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("changes", "all_late"),
@@ -52,8 +57,8 @@ def recorded(folder, **changes):
         ({"sensors": SensorsConfig(camera=CameraErrors(delay_steps=4))}, False),
     ],
 )
-def test_a_late_frame_is_that_of_so_many_frames_ago(tmp_path, changes, all_late):
-    late, now = recorded(tmp_path / "late", **changes), recorded(tmp_path / "now")
+def test_a_late_frame_is_that_of_so_many_frames_ago(now, tmp_path, changes, all_late):
+    late = recorded(tmp_path / "late", **changes)
     others = [[label["others"] for label in labels] for labels in now[0]]
     assert any(a != b for own in others for a, b in itertools.pairwise(own))
     for tracker in range(2):
