@@ -177,17 +177,18 @@ def signals():
         signal.signal(number, handler)
 
 
-@pytest.fixture(autouse=True, scope="module")
+@pytest.fixture(autouse=True)
 def memory():
-    """Worlds that earlier files have loaded go when a process has 1,150 MiB, of which 600 are what
-    the tests import.
+    """Worlds that tests have loaded go when a process has 1,300 MiB, of which 600 are what the
+    tests import.
     """
     yield
     pages = Path("/proc/self/statm")
-    if pages.is_file() and int(pages.read_text().split()[1]) * 4096 > 1150 << 20:
+    if pages.is_file() and int(pages.read_text().split()[1]) * 4096 > 1300 << 20:
         for name in ("eyas.engine.sim.assets", "eyas.engine.sim.scenes"):
             for each in vars(sys.modules.get(name, sys)).values():
                 getattr(each, "cache_clear", int)()
+        gc.collect()
         getattr(ctypes.CDLL(None), "malloc_trim", bool)(0)
 
 

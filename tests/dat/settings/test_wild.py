@@ -7,7 +7,7 @@ from eyas.engine.settings.file import load_settings
 
 from .wild import try_case
 
-CASES = 2000
+CASES = 1000
 
 
 @pytest.mark.slow

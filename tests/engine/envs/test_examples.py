@@ -96,7 +96,7 @@ def test_a_network_is_trained_on_a_map_of_ones_own(tmp_path, monkeypatch, capsys
     threads = torch.get_num_threads()
     import custom_map
 
-    policy = custom_map.main(4096, tmp_path / "field")
+    policy = custom_map.main(1024, tmp_path / "field")
     torch.set_num_threads(threads)
     assert policy.is_file()
     rows = (tmp_path / "field" / "curve.csv").read_text().splitlines()

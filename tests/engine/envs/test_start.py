@@ -42,7 +42,7 @@ def test_environments_are_registered_when_gymnasium_is_imported_after_eyas():
 
 @pytest.mark.slow
 def test_a_first_picture_imports_nothing_slow_that_it_does_not_need():
-    run(DRAWS)  # fills the cache, if it is empty
+    exec(DRAWS, {})  # fills the cache, if it is empty
     run(DRAWS + LITTLE)
 
 

@@ -12,7 +12,12 @@ from eyas.engine.state.draw import Picture
 
 WIDTH, HEIGHT, COUNT = 320, 240, 8
 CAR = {"world": {"map": "citystreet"}, "start": {"height": {"uniform": [4.0, 20.0]}}}
-WALK = {"start": {"height": {"uniform": [2.5, 9.0]}, "pitch": {"uniform": [0.35, 1.2]}}}
+FEW = {"max_count": 4, "interval": 10.0, "group_size": 4}
+"""Walkers of which each stays: to make the ways of many short lives takes seconds."""
+WALK = {
+    "start": {"height": {"uniform": [2.5, 9.0]}, "pitch": {"uniform": [0.35, 1.2]}},
+    "objects": FEW,
+}
 
 
 def frames_of(**settings) -> list:
