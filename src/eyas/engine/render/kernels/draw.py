@@ -22,7 +22,13 @@ from eyas.engine.render.kernels.bundles import (
     View,
 )
 from eyas.engine.render.kernels.lens.outputs import darken, write_bent_depth
-from eyas.engine.render.kernels.lens.resampling import face_rows, face_view, glass_of, look_through
+from eyas.engine.render.kernels.lens.resampling import (
+    face_rows,
+    face_view,
+    glass_of,
+    look_through,
+    shown_rows,
+)
 from eyas.engine.render.kernels.light.casters import cast_light
 from eyas.engine.render.kernels.light.sunlight import sunlit
 from eyas.engine.render.kernels.scalars import f4, i8
@@ -125,7 +131,9 @@ def _draw_through_lens(
     if tables.dark[slot] == 1:
         darken(task, tables, output, index)
     for face in range(tables.faces[slot]):
-        first, last = face_rows(tables, slot, face, top, bottom)
+        # Only the rows of the picture that show the face: they are half of all, for five faces.
+        begin, end = shown_rows(tables, slot, face, top, bottom)
+        first, last = face_rows(tables, slot, face, begin, end)
         if first >= last:
             continue
         view = address_of(face_view(task, tables, number, face, first, last))
@@ -137,8 +145,8 @@ def _draw_through_lens(
         count = draw_scene(band)
         if coloured:
             cast_light(band)
-        glass = address_of(glass_of(task, tables, number, face, top))
-        bent = address_of(bent_band(band, glass, scratch, worker, task.width, bottom - top))
+        glass = address_of(glass_of(task, tables, number, face, begin))
+        bent = address_of(bent_band(band, glass, scratch, worker, task.width, end - begin))
         look_through(band, scratch.word[worker], bent, coloured)
         write_facts(band, bent, count, output, task, index)
         write_colours(bent, output, task, index)
@@ -163,6 +171,17 @@ def _coloured(output: Output) -> bool:
 
 
 @kernel(inline=True)
+def _rows_of(shown: Band) -> tuple[int, int]:
+    """Return the first row of pixels of the picture that a band shows, and the one after the last:
+    through a lens, those of a face.
+    """
+    top = i8(shown.camera.top // shown.camera.down)
+    if shown.glass.on == 1:
+        top = i8(shown.glass.top)
+    return top, top + shown.lines
+
+
+@kernel(inline=True)
 def write_facts(
     band: Band,  # What was drawn, with `count` rows of `Band.drawn`
     shown: Band,  # What the picture shows: the same, or the picture of which it is a face
@@ -172,8 +191,8 @@ def write_facts(
     index: int,  # The job
 ) -> None:
     """Write what is wanted of job `index` but colours."""
-    job, until = task.job, task.until
-    number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
+    job, until, (top, bottom) = task.job, task.until, _rows_of(shown)
+    number = job.band[index, 0]
     into = job.picture[number]
     if len(output.depth) > 0:
         if shown.glass.on == 1:
@@ -195,10 +214,10 @@ def write_facts(
 @kernel(inline=True)
 def write_colours(shown: Band, output: Output, task: Task, index: int) -> None:
     """Write the colours of job `index`, if they are wanted."""
-    job = task.job
-    number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
+    job, (top, bottom) = task.job, _rows_of(shown)
     if not _coloured(output) or task.until <= MOVERS_LIGHT:
         return
+    number = job.band[index, 0]
     canvas = address_of(canvas_of(output, job.picture[number], top, bottom))
     draw_backdrop(shown, canvas)
     shade_band(shown, canvas)

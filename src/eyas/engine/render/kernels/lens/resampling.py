@@ -39,6 +39,18 @@ from eyas.lanes.vector import (
 
 
 @kernel
+def shown_rows(tables: LensTables, slot: int, face: int, top: int, bottom: int) -> tuple[int, int]:
+    """Return the first of some rows of the picture that shows a face, and the one after the last;
+    the last is not after the first if none does.
+    """
+    rows, first, last = tables.row[slot, face], bottom, top
+    for row in range(top, bottom):
+        if rows[row, 0] < rows[row, 1]:
+            first, last = min(first, row), row + 1
+    return first, last
+
+
+@kernel
 def face_rows(tables: LensTables, slot: int, face: int, top: int, bottom: int) -> tuple[int, int]:
     """Return the first row of a face that rows of the picture need, and after the last [pixels]."""
     first, last = i8(tables.extent[slot, face, 1]), i8(0)
