@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 from eyas.engine.core.identity.definitions import INDEX as DEFINITIONS
 from eyas.lanes.container import unpacked
@@ -80,10 +81,10 @@ def asked_for(metadata: str) -> set[str]:
     while wanted:
         for text in message_from_string(wanted.pop()).get_all("Requires-Dist") or ():
             need = Requirement(text)
-            here = need.marker is None or need.marker.evaluate({"extra": ""})
-            if here and need.name not in found:
-                found.add(need.name)
-                wanted.append(distribution(need.name).read_text("METADATA"))
+            name = canonicalize_name(need.name)
+            if name not in found and (need.marker is None or need.marker.evaluate({"extra": ""})):
+                found.add(name)
+                wanted.append(distribution(name).read_text("METADATA"))
     return found
 
 

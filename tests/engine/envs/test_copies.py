@@ -17,6 +17,8 @@ from eyas.engine.sim.step import step_of
 from eyas.engine.trackers.drone import DRONE
 from eyas.lanes import Kernel
 
+from ...kit.walkers import FEW
+
 SMALL = {"height": 16, "width": 16}
 
 EVERYTHING: dict[str, Any] = {
@@ -41,9 +43,6 @@ EVERYTHING: dict[str, Any] = {
     },
 }
 """Everything that remembers something."""
-
-FEW = {"max_count": 4, "interval": 10.0, "group_size": 4}
-"""Walkers of which each stays: to make the ways of many short lives takes seconds."""
 
 
 def kinds() -> dict[str, dict[str, Any]]:

@@ -15,13 +15,13 @@ from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.scene import ACTOR_OBJECT
 
+from ...kit.walkers import FEW
+
 pytestmark = pytest.mark.slow  # what its tests share takes long to make
 
 WIDTH, HEIGHT, COUNT = 160, 120, 6
 NEAR = {"height": {"uniform": [2.0, 4.0]}, "pitch": {"uniform": [0.2, 0.7]}}
 LOW = {"height": {"uniform": [4.0, 8.0]}, "pitch": {"uniform": [0.2, 0.6]}}
-FEW = {"max_count": 4, "interval": 10.0, "group_size": 4}
-"""Walkers of which each stays: to make the ways of many short lives takes seconds."""
 WORLDS = {
     "cars": {"start": LOW},
     "trucks": {"traffic": {"vehicle_type": "trailer", "max_vehicles": 12}, "start": LOW},

@@ -12,14 +12,14 @@ from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.scene import ACTOR_OBJECT, LABELLED
 
+from ...kit.walkers import FEW
+
 pytestmark = pytest.mark.slow  # what its tests share takes long to make
 
 SIZE, TRACKERS, TIMES = 84, 12, 17
 NEAR = {"height": {"uniform": [3.0, 9.0]}, "pitch": {"uniform": [0.2, 1.2]}}
 HIGH = {"height": {"uniform": [6.0, 30.0]}, "pitch": {"uniform": [0.3, 1.3]}}
 CROWD = [{"kind": "Pedestrian", "count": 40, "behaviour": "crossing"}]
-FEW = {"max_count": 4, "interval": 10.0, "group_size": 4}
-"""Walkers of which each stays: to make the ways of many short lives takes seconds."""
 WORLDS = {
     "cars": {"world": {"map": "citystreet"}, "start": HIGH},
     "town": {"world": {"map": "downtown"}, "start": HIGH},

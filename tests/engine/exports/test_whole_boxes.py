@@ -10,10 +10,10 @@ from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import Picture
 
+from ...kit.walkers import FEW
+
 WIDTH, HEIGHT, COUNT = 320, 240, 8
 CAR = {"world": {"map": "citystreet"}, "start": {"height": {"uniform": [4.0, 20.0]}}}
-FEW = {"max_count": 4, "interval": 10.0, "group_size": 4}
-"""Walkers of which each stays: to make the ways of many short lives takes seconds."""
 WALK = {
     "start": {"height": {"uniform": [2.5, 9.0]}, "pitch": {"uniform": [0.35, 1.2]}},
     "objects": FEW,

@@ -24,7 +24,8 @@ from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.catalogue import KINDS
 from eyas.engine.traffic.recorded import Vehicles
 
-FEW = {"max_count": 4, "interval": 10.0, "group_size": 4}
+from ...kit.walkers import FEW
+
 START = {"pitch": 1.37, "height": 8.0}
 
 

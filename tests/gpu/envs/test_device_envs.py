@@ -21,12 +21,11 @@ from eyas.gpu.ptx import ptx_of
 from eyas.gpu.sim.simulation import arrays_of
 from eyas.lanes.device import HostDevice
 
+from ...kit.walkers import FEW
 from .apart import ApartDevice
 
 SHORT = {"done": {"total_steps": 60, "grace_steps": 0, "no_reward_steps": 28}}
 SMALL = {"width": 24, "height": 20}
-FEW = {"max_count": 4, "interval": 10.0, "group_size": 4}
-"""Walkers of which each stays: to make the ways of many short lives takes seconds."""
 CASES = {
     "plain": ({}, {}),
     "stacked": (

@@ -20,10 +20,10 @@ from eyas.gpu.sim.view import DeviceView, empty_slots, list_actors
 from eyas.lanes import interpreted
 from eyas.lanes.device import HostDevice
 
+from ...kit.walkers import FEW
+
 SIZE = (30, 44)
 SHORT = {"done": {"total_steps": 200, "grace_steps": 0, "no_reward_steps": 80}}
-FEW = {"max_count": 4, "interval": 10.0, "group_size": 4}
-"""Walkers of which each stays: to make the ways of many short lives takes seconds."""
 CASES = {
     "night": {"world": {"weather": "night"}},
     "snow": {
