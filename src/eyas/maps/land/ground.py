@@ -83,18 +83,26 @@ def lawn(
     turn: float,  # Direction of the swaths [rad]
 ) -> list[Flat]:
     """Return the floor where nothing else covers it, with dry and lush patches."""
-    rest = shapely.difference(extent, covered)
+    rest = only_areas(shapely.difference(extent, covered))
     parts = []
     # Where patches overlap, the stronger tint wins over the edge of a patch.
     for tint, patch in list(zip(_GRASS, _grass_patches(extent, rng), strict=True))[::-1]:
-        parts.append((tint, shapely.intersection(rest, patch)))
-        rest = shapely.difference(rest, patch)
+        # Where outlines touch, overlays have lines, too, which the next overlay may not take.
+        parts.append((tint, only_areas(shapely.intersection(rest, patch))))
+        rest = only_areas(shapely.difference(rest, patch))
     made = []
     for tint, part in [((1.0, 1.0, 1.0), rest), *parts]:
         inside, outside = shapely.intersection(part, mown), shapely.difference(part, mown)
         made.append(Flat(area=inside, cover=material("lawn_mown", tint), turn=turn))
         made.append(Flat(area=outside, cover=material("lawn", tint)))
     return made
+
+
+def only_areas(shape: shapely.Geometry) -> shapely.Geometry:
+    """Return a shape without the lines and points that an overlay has left in it."""
+    if shape.geom_type != "GeometryCollection":
+        return shape
+    return shapely.MultiPolygon(polygons_of(shape))
 
 
 def _grass_patches(extent: shapely.Polygon, rng: np.random.Generator) -> list[shapely.Geometry]:
