@@ -144,7 +144,13 @@ def test_every_row_can_be_flown():
 @pytest.mark.parametrize("name", shipped_names())
 def test_a_policy_has_a_model_card_with_what_a_reader_needs(name):
     card = (DOCS / "policies" / f"{name}.md").read_text()
-    for chapter in ("Intended use", "Trained on", "What it reaches", "Limits", "besides"):
+    for chapter in (
+        "Intended use",
+        "Trained on",
+        "What it reaches",
+        "Limits",
+        "Other possible uses",
+    ):
         assert chapter in card
     assert "SHA-256 `" in card
     seen = check(EvaluationPlan(policy=name)).entry_class
