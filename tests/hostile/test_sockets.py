@@ -395,6 +395,7 @@ FEEDERS = {
     ("demo/server.py", "async for"): feed_demo,
     ("demo/server.py", "process_request"): feed_demo,
     ("benchmark/policies/sandbox.py", "read"): feed_policy,
+    ("engine/terminal/helpers.py", "recv"): None,  # pipes of processes that it has started
     ("cli/bench/measurement.py", "read"): None,  # counters of this machine's own system
 }
 
