@@ -171,7 +171,9 @@ def test_an_agent_that_fails_ends_its_own_flight_only():
     assert decision.actions[0].tolist() == [1.0, 0.0, 0.0, 0.0]
 
 
-@pytest.mark.parametrize("wrong", [{"rate": 0.0}, {"size": (4, 4)}, {"pictures": 100}])
+@pytest.mark.parametrize(
+    "wrong", [{"rate": 0.0}, {"rate": "fast"}, {"size": (4, 4)}, {"size": 3}, {"pictures": 100}]
+)
 def test_attributes_out_of_range_are_one_line(wrong):
     bad = type("Bad", (Ahead,), wrong)
     with pytest.raises(EyasError, match=f"--policy: {next(iter(wrong))} = .* is not allowed"):
@@ -234,6 +236,7 @@ def chat(tmp_path, url, **more):
 def test_a_model_behind_an_endpoint_flies(tmp_path, endpoint, monkeypatch):
     server, url = endpoint
     monkeypatch.setenv("EYAS_AGENT_KEY", "secret")
+    monkeypatch.setenv("EYAS_AGENT_HOST", "127.0.0.1")
     policy = chat(tmp_path, url, size=[64, 48], rate=2.0, step=1.0)
     assert isinstance(policy, WaypointPolicy)
     count = 3
@@ -258,6 +261,18 @@ def test_a_model_behind_an_endpoint_flies(tmp_path, endpoint, monkeypatch):
     assert len(server.asked) == 3  # it looks twice a second
     policy.act(sight._replace(clock=0.5))
     assert len(server.asked) == 6
+
+
+def test_a_key_is_for_one_machine_whatever_a_file_names(tmp_path, endpoint, monkeypatch):
+    server, url = endpoint
+    monkeypatch.setenv("EYAS_AGENT_KEY", "secret")
+    monkeypatch.setenv("EYAS_AGENT_HOST", "api.example.org")
+    policy = chat(tmp_path, url, size=[64, 48])
+    policy.begin(Start(np.zeros(1, np.int64), lambda: np.zeros((1, 4), np.int32), None))
+    one = np.ones(1, np.bool_)
+    pictures = np.zeros((1, 48, 64, 3), np.uint8)
+    policy.act(PolicyInput(pictures, one, dict, dict, ~one, clock=0.0))
+    assert [key for _, key, _ in server.asked] == [None]
 
 
 def test_an_endpoint_that_refuses_is_one_line(tmp_path, endpoint):

@@ -12,6 +12,7 @@ from functools import partial
 from http.client import HTTPException
 from pathlib import Path
 from typing import Annotated, Any, Literal
+from urllib.parse import urlsplit
 
 from pydantic import Field
 
@@ -21,10 +22,12 @@ from eyas.engine.core.config import Config, validated
 from eyas.engine.core.decoding import decoded_json, read_json
 from eyas.engine.core.errors import ConfigError, DataFileError
 
-KEY = "EYAS_AGENT_KEY"
-"""Environment variable with the key that an endpoint wants: a file cannot name another."""
+KEY, HOST = "EYAS_AGENT_KEY", "EYAS_AGENT_HOST"
+"""Environment variables with the key that an endpoint wants, and the machine that it is for: a file
+of others could name any endpoint, which then would get the key."""
 
 _LARGEST = 1 << 20  # Largest file and answer [bytes]
+_READ = 20_000  # Length of the end of a text in which an answer is looked for
 
 _FORMS = {
     "waypoints": '{"waypoints": [[x, y], ...]}: up to 8 places that the drone shall be at after '
@@ -115,7 +118,7 @@ class ChatAgent:
     def _asked(self, question: Mapping[str, Any]) -> bytes:
         url = f"{self._file.url.rstrip('/')}/chat/completions"
         head = {"Content-Type": "application/json"}
-        if KEY in os.environ:
+        if KEY in os.environ and os.environ.get(HOST) == urlsplit(url).hostname:
             head["Authorization"] = f"Bearer {os.environ[KEY]}"
         asked = urllib.request.Request(  # http or https, by its pattern
             url, json.dumps(question).encode(), head
@@ -162,6 +165,7 @@ def answer_in(text: str, step: float, size: tuple[int, int]) -> object:
         step: See `eyas.benchmark.policies.waypoints.way_of`.
         size: Width and height of the pictures [pixels].
     """
+    text = text[-_READ:]
     decoder, found, at = json.JSONDecoder(), None, text.find("{")
     while at >= 0:
         try:

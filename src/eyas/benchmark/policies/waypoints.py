@@ -266,10 +266,13 @@ def _checked(agent: object) -> frozenset[str]:
     for name, usual in USUAL.items():
         value = getattr(agent, name, usual)
         low, high = _LIMITS.get(name, (0.0, 600.0))
-        if name == "size":
-            fits = len(value) == 2 and all(8 <= each <= 2048 for each in value)
-        else:
-            fits = (name == "latency" and value == "measured") or low <= value <= high
+        try:
+            if name == "size":
+                fits = len(value) == 2 and all(8 <= each <= 2048 for each in value)
+            else:
+                fits = (name == "latency" and value == "measured") or low <= value <= high
+        except TypeError:
+            fits = False
         if not fits:
             raise ConfigError(f"--policy: {name} = {shown(value)} is not allowed")
     begin = getattr(agent, "begin", None)
