@@ -63,7 +63,7 @@ def main() -> None:
     # The second chimney of the standard map, from the street before it.
     smoke = seen(air, np.array([30.0, 80.0, 24.0]), 0.45, 0.12)
     birds = seen(air, around(air, "bird", 2) + np.array([-9.0, -3.0, 3.0]), 0.3, 0.25)
-    drone = seen(air, around(air, "quadrotor", 1) + np.array([-2.2, -0.5, 1.0]), 0.22, 0.4)
+    drone = seen(air, around(air, "Quadrotor", 1) + np.array([-2.2, -0.5, 1.0]), 0.22, 0.4)
     spray = behind_the_fastest(started(world={"wind": WIND, "weather": "rain", "spray": True}))
     sheet = np.concatenate([np.concatenate([smoke, spray], 1), np.concatenate([birds, drone], 1)])
     Image.fromarray(sheet).save(Path("docs/images/air.jpg"), quality=85, optimize=True)

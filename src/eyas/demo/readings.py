@@ -7,14 +7,15 @@ import numpy as np
 
 from eyas.demo.flight import DemoFlight
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.state.terrain import plane_at, relief_at
+from eyas.engine.state.terrain import relief_at
 from eyas.engine.targets.catalogue import MODELS
 from eyas.engine.task import reward
 from eyas.engine.task.done import DoneReason
 from eyas.engine.task.ground import ground_corners
+from eyas.engine.task.observe import target_plane
 from eyas.lanes import interpreted
 
-_plane_at, _relief_at = interpreted(plane_at), interpreted(relief_at)
+_target_plane, _relief_at = interpreted(target_plane), interpreted(relief_at)
 _axis_depth, _view_share = interpreted(reward.axis_depth), interpreted(reward.view_share)
 _rewarded_size = interpreted(reward.rewarded_size)
 _view, _view_discrete = interpreted(reward.view_continuous), interpreted(reward.view_discrete)
@@ -28,7 +29,7 @@ def readings(flight: DemoFlight) -> dict[str, Any]:
     rules, terrain = flight.simulation.rules, flight.world.assets.scene.terrain
     x, y = targets.centre[0, :2].tolist()
     position, rotation = cameras.position[0], cameras.rotation[0]
-    ground = _plane_at(terrain, x, y)
+    ground = _target_plane(targets, 0, terrain)
     field = float(cameras.field_of_view[0])
     depth = _axis_depth(position, rotation, ground)
     share = _view_share(position, rotation, depth, ground, _rewarded_size(field, rules))

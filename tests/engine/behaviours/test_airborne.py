@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from eyas.engine.behaviours.airborne import Space, chases, flocks
+from eyas.engine.behaviours.airborne import chases, flocks
+from eyas.engine.behaviours.airspace import Space
 from eyas.engine.behaviours.groups import SampleClock
 from eyas.engine.core.rng import stream
 from eyas.engine.state.motion import SAMPLE, SampledMotion

@@ -83,7 +83,7 @@ def crowded():
 def test_what_flies_is_labelled_but_never_a_target(crowded):
     kind = [KINDS[k].name for k in crowded.traffic.motion.kind.tolist()]
     assert kind.count("bird") == 40
-    assert kind.count("quadrotor") == 5
+    assert kind.count("Quadrotor") == 5
     for _ in range(4):
         crowded.reset()
         assert {kind[a] for a in crowded.snapshot.targets.actor.tolist()} <= {"passenger", "bus",
@@ -96,7 +96,7 @@ def test_boxes_hold_the_pixels_of_birds_and_drones(crowded):
     kind = [KINDS[k].name for k in crowded.traffic.motion.kind.tolist()]
     down = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
     seen = 0
-    flying = [a for a, name in enumerate(kind) if name in ("bird", "quadrotor")]
+    flying = [a for a, name in enumerate(kind) if name in ("bird", "Quadrotor")]
     for actor in flying[::4]:
         if not state.present[0, actor]:
             continue
@@ -121,4 +121,4 @@ def test_phrases_do_not_speak_of_what_flies(crowded):
     cameras.position[0] = state.position[0, bird] + [0.0, 0.0, 6.0]
     cameras.rotation[0] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]
     said = {kind[actor] for actor in crowded.view.in_view(0).actor.tolist()}
-    assert not said & {"bird", "quadrotor"}
+    assert not said & {"bird", "Quadrotor"}

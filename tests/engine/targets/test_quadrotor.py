@@ -10,7 +10,7 @@ from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.quadrotor import quadrotor_levels
 from eyas.engine.targets.rig import Rigs
 
-KIND = kind_index("quadrotor")
+KIND = kind_index("Quadrotor")
 
 
 @pytest.mark.parametrize("level", range(3))

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from eyas.benchmark.policies.oracle_commands import actions_of_oracles, flown_over
 from eyas.engine.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
 
@@ -25,4 +27,5 @@ class Follow:
         """Fly there."""
         state = sight.snapshot()
         places, velocities = state.targets.centre[:, :2], state.targets.velocity[:, :2]
-        return Decision(flown_over(state, places, velocities, self.env))
+        levels = np.stack((state.targets.centre[:, 2], state.targets.velocity[:, 2]), axis=1)
+        return Decision(flown_over(state, places, velocities, levels, self.env))

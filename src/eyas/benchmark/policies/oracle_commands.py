@@ -24,13 +24,15 @@ def flown_over(
     state: Snapshot,
     places: Floats,  # The points, east and north [m], shape (N, 2)
     velocities: Floats,  # How they move [m/s], shape (N, 2)
+    levels: Floats,  # Their heights [m] and vertical speeds [m/s], shape (N, 2)
     env: EnvConfig,
 ) -> NDArray[np.int64] | Floats:
     """Return the actions that bring drones over points that move.
 
     Seven actions jump by their whole speed, which a drone on a flight controller cannot follow: it
     swings, and is lost. Velocities are those of the points, and steer where the drone is told to
-    be, not where it is: else what it cannot follow at once would be asked for twice.
+    be, not where it is: else what it cannot follow at once would be asked for twice. Over a target
+    that flies, they keep the height above it at which the episode began.
 
     Returns:
         Numbers of actions, shape (N,), or velocities, shape (N, 4).
@@ -41,4 +43,7 @@ def flown_over(
         return towards(turned(error, -yaw), env)
     error = error - (trackers.commanded_position - trackers.position)[:, :2]
     wanted = turned(velocities + _RATE * error, -yaw)
-    return np.concatenate((wanted, np.zeros_like(wanted)), axis=1)
+    height = levels[:, 0] + state.episodes.start_offset[:, 2]
+    climb = levels[:, 1] + _RATE * (height - trackers.commanded_position[:, 2])
+    up = np.where(state.targets.flies, climb, 0.0)
+    return np.column_stack((wanted, up, np.zeros_like(up)))

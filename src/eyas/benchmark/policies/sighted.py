@@ -90,6 +90,7 @@ class SightOracle:
         """Forget the targets."""
         count = len(start.seeds)
         self._last = LastMotion.create(count)
+        self._levels = np.zeros((count, 2))  # See `flown_over`
         self._begun = np.zeros((count, 2))  # Middle of each first picture [m], shape (N, 2)
         self._known = np.zeros(count, np.bool_)
         self._sees = np.zeros(count, np.bool_)
@@ -111,6 +112,7 @@ class SightOracle:
         tick, middle, yaw = episodes.tick, episodes.view_centre[:, :2], trackers.euler[:, 2]
         new = self._seen_at < 0
         self._last.place[new], self._seen_at[new] = middle[new], tick[new]
+        self._levels[new, 0] = (trackers.position - episodes.start_offset[:, :3])[new, 2]
         self._begun[new] = middle[new]
         self._look(sight)
         self.clue = clue = Clue(
@@ -125,7 +127,8 @@ class SightOracle:
         if sight.told is not None:
             home = np.array([words == COME_BACK for words in sight.told.words])
             places = np.where(home[:, None], self._begun, places)
-        return Decision(flown_over(state, places, self._speeds(places, clue), self.env))
+        speeds = self._speeds(places, clue)
+        return Decision(flown_over(state, places, speeds, self._levels, self.env))
 
     def _speeds(self, places: Floats, clue: Clue) -> Floats:
         """Return how fast the places move to which it flies [m/s], shape (N, 2): where it guesses,
@@ -152,5 +155,8 @@ class SightOracle:
         last.place[seen] = targets.centre[seen, :2]
         last.velocity[seen] = targets.velocity[seen, :2]
         last.yaw[seen], last.turn_rate[seen] = targets.yaw[seen], targets.yaw_rate[seen]
+        self._levels[:, 1] = 0.0  # what is out of sight keeps its height
+        self._levels[seen, 0] = targets.centre[seen, 2]
+        self._levels[seen, 1] = targets.velocity[seen, 2]
         self._seen_at[seen] = episodes.tick[seen]
         self._known |= seen

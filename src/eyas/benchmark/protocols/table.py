@@ -31,6 +31,7 @@ PROTOCOLS: Registry[Protocol] = Registry(
         "evade": f"{_ROOM}.evade:EVADE",
         "referring": f"{_ROOM}.referring:REFERRING",
         "mission": f"{_ROOM}.mission:MISSION",
+        "air": f"{_ROOM}.air:AIR",
         "crowd": f"{_ROOM}.crowd:CROWD",
         "coat": f"{_ROOM}.crowd:COAT",
         "pair": f"{_ROOM}.team:PAIR",

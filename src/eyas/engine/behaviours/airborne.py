@@ -3,13 +3,13 @@
 All of it is a function of a seed, a number and the time.
 """
 
-from collections.abc import Callable
 from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from eyas.engine.behaviours.airspace import Space
 from eyas.engine.behaviours.groups import SampleClock
 from eyas.engine.core.config import Config
 from eyas.engine.state.motion import SAMPLE, SampledMotion
@@ -33,14 +33,6 @@ class AirborneConfig(Config):
     """Birds, in flocks of up to six (docs/weather.md); they are never targets."""
     drones: Annotated[int, Field(ge=0, le=20)] = 0
     """Drones, each of which follows a vehicle of its own; they are never targets."""
-
-
-class Space(NamedTuple):
-    """A map, as those see it who fly over it."""
-
-    extent: Floats  # Width and depth [m], shape (2,)
-    heights: Callable[[Floats], Floats]
-    """Returns how high something stands around points [m], east and north, shape (..., 2)."""
 
 
 class _Way(NamedTuple):

@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.behaviours.aerial import flown_table
 from eyas.engine.behaviours.chain import Chain, Poses, chain_through
 from eyas.engine.behaviours.crossing_walks import CrossingWalk, Streets, crossing_walk, walk_motion
 from eyas.engine.behaviours.crossings import crossings_of
@@ -29,7 +30,7 @@ from eyas.engine.core.errors import SpawnError
 from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.state.scene import Scene
 from eyas.engine.state.terrain import reliefs
-from eyas.engine.targets.habit import Behaviour, Habit
+from eyas.engine.targets.habit import AERIAL, Behaviour, Habit
 from eyas.lanes import exact
 
 # Where people stand and wait: at bus stops, and beside the tables of cafes.
@@ -144,6 +145,8 @@ def scripted_table(
         SpawnError: The map has no room for it.
     """
     lifetimes, habit = group.lifetimes, group.habit
+    if (group.behaviour or habit.behaviour) in AERIAL:
+        return flown_table(ground, group, clock, rng)
     seconds = (lifetimes.leaves - lifetimes.enters) / clock.rate
     if (group.behaviour or habit.behaviour) is Behaviour.CROSSING:
         gaps = GapAcceptance(vehicles, clock.samples, clock.rate, ground.lights)

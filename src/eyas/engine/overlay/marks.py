@@ -13,8 +13,9 @@ from eyas.engine.core.frames import rotate
 from eyas.engine.mesh.panels import cells, closed, fan, halves
 from eyas.engine.overlay.items import GroundArea, Label, Overlay, Solid, ThinLine
 from eyas.engine.state.snapshot import Snapshot
-from eyas.engine.state.terrain import Plane, Terrain, plane_at
+from eyas.engine.state.terrain import Plane, Terrain
 from eyas.engine.task.ground import ground_corners, on_plane
+from eyas.engine.task.observe import target_plane
 from eyas.engine.task.reward import axis_depth, view_centre
 from eyas.engine.task.rules import BuiltinReward, Rules
 from eyas.lanes import exact, interpreted
@@ -132,7 +133,7 @@ def _skin(low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.flo
     return halves(cells(closed([low, high])))
 
 
-_plane_at, _axis_depth = interpreted(plane_at), interpreted(axis_depth)
+_target_plane, _axis_depth = interpreted(target_plane), interpreted(axis_depth)
 _view_centre, _rotated = interpreted(view_centre), interpreted(rotate)
 
 VIEW_COLOUR = (0.25, 0.8, 1.0)  # sRGB, as all colours here
@@ -209,9 +210,8 @@ class Marks:
         )
 
     def _ground(self, n: int) -> Plane:
-        """Return the plane tangent to the ground under a target."""
-        x, y, _ = self._snapshot.targets.centre[n]
-        return _plane_at(self._terrain, x, y)
+        """Return the plane of a target, see `target_plane`."""
+        return _target_plane(self._snapshot.targets, n, self._terrain)
 
     def _seen(self, n: int) -> NDArray[np.float64]:
         """Return the corners of the ground that a camera sees [m], shape (K, 3)."""

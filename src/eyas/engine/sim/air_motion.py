@@ -5,21 +5,17 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.behaviours.airborne import AirborneConfig, Space, chases, flocks
+from eyas.engine.behaviours.airborne import AirborneConfig, chases, flocks
+from eyas.engine.behaviours.airspace import airspace_of
 from eyas.engine.behaviours.groups import SampleClock
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.rng import stream
-from eyas.engine.render.bake.ambient import canopy_map, height_map
 from eyas.engine.state.motion import SAMPLE, SampledMotion
 from eyas.engine.state.scene import Scene
-from eyas.engine.state.terrain import reliefs
 from eyas.engine.targets.bird import BIRD
 from eyas.engine.targets.catalogue import kind_index
 from eyas.engine.targets.quadrotor import QUADROTOR
-
-_TEXEL = 4.0  # Side of the squares in which heights are known [m]
-_AROUND = 2  # Squares around a place whose heights count
 
 _BIRD_SPEED, _DRONE_SPEED = 11.0, 7.0
 
@@ -76,32 +72,5 @@ def _numbers(
 ) -> NDArray[np.float32]:
     """Return the numbers of the samples of `flocks`."""
     rng = stream(seed, "airborne", kind)
-    table = flocks(count, kind, _space_of(scene), clock, rng, speed).table
+    table = flocks(count, kind, airspace_of(scene), clock, rng, speed).table
     return table.view(np.float32).reshape(*table.shape, -1)
-
-
-def _space_of(scene: Scene) -> Space:
-    """Return a map as birds see it."""
-    extent = np.array(scene.size)
-    columns, rows = np.ceil(extent / _TEXEL).astype(int)
-    frame = np.array([*(-0.5 * extent), 1.0 / _TEXEL, scene.terrain.floor])
-    shape = (int(rows), int(columns))
-    high = np.maximum(height_map(scene, frame, shape), canopy_map(scene, frame, shape))
-    high = np.maximum(high, height_map(scene, frame, shape, structures=True))
-    wide = np.pad(high, _AROUND)
-    near = [
-        wide[i : i + shape[0], j : j + shape[1]]
-        for i in range(2 * _AROUND + 1)
-        for j in range(2 * _AROUND + 1)
-    ]
-    highest = np.max(near, axis=0)
-
-    def heights(points: NDArray[np.float64]) -> NDArray[np.float64]:
-        place = np.floor((points - frame[:2]) * frame[2]).astype(int)
-        column = np.clip(place[..., 0], 0, shape[1] - 1)
-        row = np.clip(place[..., 1], 0, shape[0] - 1)
-        found: NDArray[np.float64] = reliefs(scene.terrain, points) + highest[row, column]
-        found += scene.terrain.floor
-        return found
-
-    return Space(extent, heights)

@@ -218,8 +218,9 @@ def _groups(crowd: Crowd, clock: SampleClock) -> list[ScriptedGroup]:
     groups = []
     if crowd.custom is None and not crowd.follows_vehicles:
         lifetimes = _lifetimes(crowd, clock)
-        target = ExtraConfig(kind=crowd.target)
-        groups.append(_group(target, lifetimes, crowd.objects.offset, "objects.max_count"))
+        target = ExtraConfig(kind=crowd.target, behaviour=crowd.objects.behaviour)
+        one = _group(target, lifetimes, crowd.objects.offset, "objects.max_count")
+        groups.append(one._replace(chosen_by="objects.behaviour"))
     for number, extra in enumerate(crowd.extras):
         if not extra.is_traffic:
             lifetimes = lasting(extra.count, clock.samples)

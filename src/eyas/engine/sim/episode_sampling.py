@@ -44,6 +44,7 @@ class ModelTable(NamedTuple):
     rise: NDArray[np.float64]  # [m], shape (M,)
     ahead: NDArray[np.float64]  # [m], shape (M,)
     slowest: NDArray[np.float64]  # [m/s], shape (M,)
+    flies: NDArray[np.bool_]  # Shape (M,)
 
 
 class SamplingRules(NamedTuple):
@@ -296,7 +297,7 @@ def follow(
         episodes.relative_velocity[n, axis] = episodes.relative_acceleration[n, axis] = 0.0
         targets.size[n, axis] = models.size[model, axis]
     targets.rise[n], targets.ahead[n] = models.rise[model], models.ahead[model]
-    targets.slowest[n] = models.slowest[model]
+    targets.slowest[n], targets.flies[n] = models.slowest[model], models.flies[model]
 
 
 @kernel(inline=True)

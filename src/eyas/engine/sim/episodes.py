@@ -295,6 +295,7 @@ def _model_table() -> ModelTable:
         rise=np.array([model.rise for model in MODELS], np.float64),
         ahead=np.array([kind.ahead for kind in kinds], np.float64),
         slowest=np.array([kind.slowest for kind in kinds], np.float64),
+        flies=np.array([kind.flies for kind in kinds], np.bool_),
     )
 
 

@@ -124,6 +124,7 @@ class TargetState(NamedTuple):
     """Heading of its trailer less that of its truck [rad], shape (N,); 0 of all others."""
     travelled: Floats  # Way since it entered the world [m], shape (N,)
     slowest: Floats  # Speed below which it counts as standing [m/s], shape (N,)
+    flies: NDArray[np.bool_]  # See `eyas.engine.targets.kind.Kind`, shape (N,)
     centre: Floats  # Visible middle of the target, the point that the reward uses [m], shape (N, 3)
     lost: NDArray[np.bool_]
     """Whether the target has left the world since the last reset, shape (N,)."""
@@ -147,6 +148,7 @@ class TargetState(NamedTuple):
             hitch=np.zeros(count),
             travelled=np.zeros(count),
             slowest=np.zeros(count),
+            flies=np.zeros(count, np.bool_),
             centre=np.zeros((count, 3)),
             lost=np.zeros(count, np.bool_),
         )

@@ -8,11 +8,12 @@ from pydantic import AfterValidator, Field
 from eyas.engine.core.config import Config
 from eyas.engine.core.errors import UnknownNameError
 from eyas.engine.core.variation import Variation, within
+from eyas.engine.targets.habit import Behaviour
 from eyas.engine.traffic.config import VehicleType
 
 
 class TargetName(StrEnum):
-    """Types of targets, with the names of the original's `Tracking_Object`."""
+    """Types of targets; all but the last have the names of the original's `Tracking_Object`."""
 
     SUMO_VEHICLE = "SUMO_VEHICLE"
     PEDESTRIAN = "Pedestrian"
@@ -27,6 +28,7 @@ class TargetName(StrEnum):
     SCOUT = "Scout"
     GHOST_DOG = "GhostDog"
     HOAP_2 = "Hoap2"
+    QUADROTOR = "Quadrotor"  # Eyas' own: it flies
 
     @classmethod
     def elsewhere(cls, name: str) -> str:
@@ -78,3 +80,5 @@ class ObjectsConfig(Config):
     """Objects placed together."""
     offset: Offset = 0.0
     """Distance to the left of the middle of the road [m]; mirrored: on both sides."""
+    behaviour: Behaviour | None = None
+    """How they move; None: as their kind does."""

@@ -1,11 +1,11 @@
-"""How people and robots move by themselves."""
+"""How people, robots and drones move by themselves."""
 
 from enum import StrEnum
 from typing import NamedTuple
 
 
 class Behaviour(StrEnum):
-    """How a pedestrian or a robot moves. None goes through walls, trees or water."""
+    """How a pedestrian, a robot or a drone moves. None goes through walls, trees or water."""
 
     POLYLINE = "polyline"
     """Round and round through 2 to 4 random points within 30 m, as the original's pedestrians."""
@@ -19,6 +19,14 @@ class Behaviour(StrEnum):
     WANDER = "wander"  # As straight, but also turns at random, every few metres
     WEAVE = "weave"  # Straight on in a wave
     STOP = "stop"  # Straight, perhaps a turn, and then stands still for good
+    CRUISE = "cruise"  # In the air, from place to place over roofs and trees
+    ORBIT = "orbit"  # In the air, round and round a place, above all that stands there
+    ROAM = "roam"  # In the air, 2 to 3 m above the ground: between houses, below crowns
+    FLEE = "flee"  # As `roam`, nearly twice as fast, with sudden turns
+
+
+AERIAL = frozenset({Behaviour.CRUISE, Behaviour.ORBIT, Behaviour.ROAM, Behaviour.FLEE})
+"""Behaviours of what flies."""
 
 
 class Habit(NamedTuple):

@@ -158,6 +158,8 @@ class Kind(KindFacts):
     """A kind of target: everything that distinguishes it from other kinds."""
 
     rig: Callable[[], Rig]  # Returns the rig of all its models
+    flies: bool = False
+    """Whether the reward uses the level plane through it, and not the ground below it."""
     extent: Callable[[str, float, float], NDArray[np.float64]] | None = None
     """Returns the box of a model at a moment, by its name, the way that it has travelled along the
     ground [m] and its speed [m/s]: least and largest x, y and z in the model frame [m], shape

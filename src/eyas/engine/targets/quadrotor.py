@@ -1,4 +1,4 @@
-"""A quadrotor: what the trackers of a shared world look like to each other."""
+"""A quadrotor: a target, and what the trackers of a shared world look like to each other."""
 
 from collections.abc import Sequence
 
@@ -9,6 +9,7 @@ from eyas.engine.state.draw import DrawList
 from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.motion import ActorState
 from eyas.engine.state.scene import ObjectClass
+from eyas.engine.targets.habit import Behaviour, Habit
 from eyas.engine.targets.kind import Group, Kind, Looks, Model
 from eyas.engine.targets.shapes import flier_levels
 from eyas.lanes import exact
@@ -53,17 +54,17 @@ class QuadrotorRig:
 
 
 QUADROTOR = Kind(
-    name="quadrotor",
+    name="Quadrotor",
     models=(
         Model(
             name="Quadrotor",
             typename="Quadrotor",
-            kind="quadrotor",
+            kind="Quadrotor",
             size=(0.405, 0.445, 0.11),  # with its rotors, as a DJI Mavic 2
             rise=_MIDDLE,
             words=("a grey drone", "a grey drone (Quadrotor)"),
             motion="flies",
-            speed=0.0,
+            speed=6.0,
             stride=1.0,
         ),
     ),
@@ -71,5 +72,7 @@ QUADROTOR = Kind(
     object_class=ObjectClass.ROBOT,
     rig=QuadrotorRig,
     keeps_colours=True,
+    flies=True,
+    habit=Habit(Behaviour.CRUISE, speed=6.0, acceleration=3.0, yaw_rate=2.0, radius=6.0),
 )
 """The kind in the catalogue."""

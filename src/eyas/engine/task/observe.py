@@ -6,7 +6,7 @@ from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.frames import rotate_back
 from eyas.engine.state.episode import EpisodeState
 from eyas.engine.state.snapshot import CameraState, TargetState, TrackerState
-from eyas.engine.state.terrain import Terrain, height_over, plane_at
+from eyas.engine.state.terrain import Plane, Terrain, height_over, plane_at
 from eyas.engine.task.direction import target_direction
 from eyas.engine.task.reward import axis_depth, reward_value, view_centre, view_share
 from eyas.engine.task.rules import Rules
@@ -33,6 +33,17 @@ def clear_episode(episodes: EpisodeState, n: int) -> None:
 
 
 @kernel(inline=True)
+def target_plane(targets: TargetState, n: int, terrain: Terrain) -> Plane:
+    """Return the plane on which tracker `n` is to have its target in the middle of the picture: the
+    one that touches the ground under it, or the level one through a target that flies.
+    """
+    x, y = targets.centre[n, 0], targets.centre[n, 1]
+    if targets.flies[n]:
+        return Plane(x, y, targets.centre[n, 2], 0.0, 0.0)
+    return plane_at(terrain, x, y)
+
+
+@kernel(inline=True)
 def observe(
     trackers: TrackerState,
     cameras: CameraState,
@@ -45,12 +56,12 @@ def observe(
 ) -> None:
     """Compute tracker `n`'s observation of its target, at a reset and in each physics step.
 
-    The reward uses the tangent plane of the ground under the target, and the part of the picture
-    of a size from `rewarded_size`.
+    The reward uses the plane of the target, and the part of the picture of a size from
+    `rewarded_size`.
     """
     position, rotation = cameras.position[n], cameras.rotation[n]
     x, y = targets.centre[n, 0], targets.centre[n, 1]
-    ground = plane_at(terrain, x, y)
+    ground = target_plane(targets, n, terrain)
     depth = axis_depth(position, rotation, ground)
     middle_x, middle_y = view_centre(position, rotation, depth)
     share = view_share(position, rotation, depth, ground, half_size)
