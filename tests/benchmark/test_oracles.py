@@ -134,3 +134,21 @@ def test_a_search_goes_where_hidden_vehicles_can_be():
     away = _errors(RoadSearch(), 8.0)
     assert np.median(away) < 60.0
     assert (away < 10.0).mean() > 0.2
+
+
+@pytest.mark.parametrize("name", ["follow", "sighted"])
+def test_an_oracle_keeps_its_height_over_a_target_that_climbs(name):
+    protocol, policy = PROTOCOLS.get("air"), open_policy(name, {"actions": "velocity"})
+    place = Place("citystreet", "day", "Quadrotor")
+    specs = [EpisodeSpec(place, 0.0, seed, variant="cruise") for seed in (900_000_003, 900_000_004)]
+    batch = EpisodeBatch(specs, protocol, policy.env)
+    every, nobody = np.ones(2, np.bool_), np.zeros(2, np.bool_)
+    policy.begin(Start(np.array([3, 4]), lambda: np.zeros((2, 4), np.int32), None, batch.roads))
+    state = batch.snapshot()
+    state.targets.velocity[:, 2] = 1.5
+    sight = PolicyInput(batch.observations, every, lambda: state, lambda: np.ones(2), nobody)
+    up = np.asarray(policy.act(sight).actions)[:, 2]
+    np.testing.assert_allclose(up, 1.5, atol=1e-6)
+    state.targets.centre[:, 2] += 2.0
+    if name == "follow":  # at once; the other looks again after some steps
+        np.testing.assert_allclose(np.asarray(policy.act(sight).actions)[:, 2], 3.5, atol=1e-6)

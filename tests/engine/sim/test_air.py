@@ -122,3 +122,41 @@ def test_phrases_do_not_speak_of_what_flies(crowded):
     cameras.rotation[0] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]
     said = {kind[actor] for actor in crowded.view.in_view(0).actor.tolist()}
     assert not said & {"bird", "Quadrotor"}
+
+
+@pytest.fixture(scope="module")
+def aloft():
+    config = SimConfig(
+        target="Quadrotor", objects={"behaviour": "cruise"}, start={"height": 6.0, "pitch": 0.9}
+    )
+    simulation = build_simulation(config, each_alone(4))
+    simulation.reset()
+    return simulation
+
+
+def test_the_reward_uses_the_level_plane_through_a_target_that_flies(aloft):
+    targets, cameras, episodes = (
+        getattr(aloft.snapshot, name) for name in ("targets", "cameras", "episodes")
+    )
+    assert targets.flies.all()
+    assert (targets.centre[:, 2] > 7.0).all()
+    forward = cameras.rotation[:, :, 0]
+    depth = (targets.centre[:, 2] - cameras.position[:, 2]) / forward[:, 2]
+    middle = cameras.position + depth[:, None] * forward
+    np.testing.assert_allclose(episodes.view_centre, middle, atol=1e-6)
+    away = np.hypot(*(targets.centre - middle)[:, :2].T)
+    np.testing.assert_allclose(episodes.offset, away, atol=1e-6)
+
+
+def test_a_target_that_flies_is_in_the_picture_and_moves_up_and_down(aloft):
+    picture = Picture.create(4, 240, 320, object_id=True)
+    aloft.draw(np.arange(4, dtype=np.int32), picture)
+    for k in range(4):
+        own = picture.object_id[k] == ACTOR_OBJECT + aloft.snapshot.targets.actor[k]
+        assert own.sum() > 20
+    begun = aloft.snapshot.targets.centre.copy()
+    for _ in range(200):
+        aloft.carry(10)
+    moved = np.abs(aloft.snapshot.targets.centre - begun)
+    assert np.hypot(*moved[:, :2].T).min() > 3.0
+    assert not aloft.snapshot.targets.lost.any()
