@@ -317,12 +317,14 @@ def feed_demo(simulation, tmp_path, caplog):
     from websockets.exceptions import ConnectionClosed
     from websockets.sync.client import connect
 
+    from eyas.demo.offer import Offer
     from eyas.demo.run import listen
     from eyas.demo.server import DemoServer
     from eyas.demo.session import Session
     from eyas.demo.stages import FreeStage
 
-    session = Session(updated(AS_FLOWN, SMALL), ("follow",), tmp_path)
+    config = updated(AS_FLOWN, SMALL)
+    session = Session(config, lambda: Offer.of(config, folder=tmp_path), tmp_path)
     listening, chance, loop = listen("127.0.0.1", 0), random.Random(6), asyncio.new_event_loop()
     port, begun = listening.getsockname()[1], threading.Event()
     server = loop.create_task(
