@@ -2,7 +2,7 @@
 
 import { rewardColour } from "./stage.js";
 import { KINDS, Plot } from "./plot.js";
-import { t } from "./words.js";
+import { named, t } from "./words.js";
 
 const REASONS = {
   height: "too low or too high", distance: "too far from its commands", velocity: "too fast",
@@ -19,7 +19,7 @@ const NUMBERS = [
   ["climb", (s) => `${s.climb.toFixed(1)} m/s`],
   ["yaw rate", (s) => `${s.yaw_rate.toFixed(0)} °/s`],
   ["camera", (s) => `${s.pitch.toFixed(0)}° / ${s.camera_yaw.toFixed(0)}°`],
-  ["target", (s) => t(s.target.words)],
+  ["target", (s) => named(s.target.words)],
   ["model", (s) => s.target.model],
   ["its speed", (s) => `${s.target.speed.toFixed(1)} m/s`],
   ["time", (s) => `${s.time.toFixed(1)} s`],

@@ -5,8 +5,8 @@ import { t } from "./words.js";
 export const KINDS = {
   view: { title: "view", colour: "#22b8cf" },
   distance: { title: "distance", colour: "#f59f45" },
-  view_discrete: { title: "view, in steps", colour: "#7d8cff" },
-  distance_discrete: { title: "distance, in steps", colour: "#e26bb4" },
+  view_discrete: { title: "view, steps", colour: "#7d8cff" },
+  distance_discrete: { title: "distance, steps", colour: "#e26bb4" },
 };
 const SECONDS = 20;
 

@@ -1,7 +1,7 @@
 // The menus of the world, and the sliders of the reward.
 
 import { release } from "./keys.js";
-import { t } from "./words.js";
+import { named, t } from "./words.js";
 
 const SLIDERS = ["view_range", "view_scale", "distance_range", "distance_scale"];
 const NUMBERS = ["vehicles", "people", "hour"];
@@ -55,7 +55,7 @@ export class Settings {
 
   greet({ maps, policies, protocols, targets, lights, most_vehicles: most }) {
     Object.assign(this, { maps, policies });
-    fill(by("target"), Object.entries(targets).map(([name, words]) => [name, t(words), name]));
+    fill(by("target"), Object.entries(targets).map(([name, words]) => [name, named(words), name]));
     fill(by("light"), lights.map((name) => [name, t(LIGHTS[name] ?? name)]));
     fill(by("map"), Object.entries(maps).map(([name, { title }]) => [name, t(short(name)), t(title)]));
     const shares = [0.1, 0.25, 0.5, 1].map((share) => Math.max(Math.round(share * most), 1));
