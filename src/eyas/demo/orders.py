@@ -198,9 +198,8 @@ def enter_new_world(session: Session) -> dict[str, Any] | None:
     session.screen.view = view
     if rival is not None:
         _duel(session, said.DuelMessage(policy=rival))
-    if film is not None:
-        play(session, film)
-    return ended | world_now(session)
+    shown = play(session, film) if film is not None else None
+    return ended | world_now(session) | (shown or {})
 
 
 def _fly(session: Session, message: said.FlyMessage) -> None:

@@ -55,7 +55,7 @@ export const CHINESE = {
   World: "世界", Target: "目标", Tracker: "飞行器", drone: "无人机", "drone with physics": "带动力学的无人机", car: "汽车",
   "Time of day": "时刻", Light: "光照", Traffic: "车流", "People around": "周围的行人", none: "无", "{} cars": "{} 辆车",
   "as the weather has it": "随天气", bright: "明亮", dim: "昏暗", dark: "黑暗", "{} h": "{} 时",
-  State: "状态", "off the middle": "偏离中央", "beside it": "水平偏移", height: "高度", speed: "速度", climb: "爬升",
+  State: "状态", "how central": "居中程度", offset: "水平偏移", height: "高度", speed: "速度", climb: "爬升",
   "yaw rate": "偏航角速度", camera: "相机", target: "目标", model: "型号", "its speed": "目标速度", time: "时间",
   "A training episode would end:": "训练回合会结束：", "A training episode would go on.": "训练回合会继续。",
   "too low or too high": "过低或过高", "too far from its commands": "偏离指令过远", "too fast": "过快",

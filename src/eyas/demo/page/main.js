@@ -79,7 +79,10 @@ function text(told) {
   }
   if (told.reward) settings.reward(told.reward);
   if (told.reward && settings.chosen) board.list(settings.terms());
-  if ("pilot" in told) by("watching").hidden = told.pilot;
+  if ("pilot" in told) {
+    by("watching").hidden = told.pilot;
+    document.body.classList.toggle("watches", !told.pilot);
+  }
   if ("pilot" in told && told.pilot) showLook();
   if ("busy" in told) building(told.busy);
   if (told.film) film.show(told.film);

@@ -11,8 +11,8 @@ const REASONS = {
   not_a_number: "not a number",
 };
 const NUMBERS = [
-  ["off the middle", (s) => s.p.toFixed(3)],
-  ["beside it", (s) => `${s.offset.toFixed(1)} m`],
+  ["how central", (s) => s.p.toFixed(3)],
+  ["offset", (s) => `${s.offset.toFixed(1)} m`],
   ["distance", (s) => `${s.distance.toFixed(1)} m`],
   ["height", (s) => `${s.height.toFixed(1)} m`],
   ["speed", (s) => `${s.speed.toFixed(1)} m/s`],
