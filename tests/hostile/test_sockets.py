@@ -24,6 +24,7 @@ import pytest
 import eyas
 from eyas.engine.core.bounds import FARTHEST
 from eyas.engine.core.config import updated
+from eyas.engine.core.errors import EyasError
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.serving import Loop, serve
 from eyas.engine.sim.worlds import together
@@ -309,6 +310,9 @@ DEMO = {
     "box": {"box": [0.1, 0.1, 0.2, 0.2]},
     "ready": {"pilot": "1", "device": "touch"},
     "leave": {},
+    "film": {"link": "desert-bare/day/follow/1/00000000/hour=9"},
+    "duel": {"policy": "follow"},
+    "stage": {"protocol": "none"},
 }
 
 
@@ -317,6 +321,7 @@ def feed_demo(simulation, tmp_path, caplog):
     from websockets.exceptions import ConnectionClosed
     from websockets.sync.client import connect
 
+    from eyas.demo.film import link_of, read_link
     from eyas.demo.offer import Offer
     from eyas.demo.run import listen
     from eyas.demo.server import DemoServer
@@ -348,6 +353,12 @@ def feed_demo(simulation, tmp_path, caplog):
         with page() as connection, suppress(ConnectionClosed):
             for text in texts[first : first + 15]:
                 connection.send(text.decode(errors="ignore"))
+    link = link_of(session.builder.plan, "follow", 1, session.offer).text
+    more = [f"{link}/{name}={value:g}" for name in ("hour", "people") for value in NUMBERS]
+    damaged = [content.decode(errors="replace") for content in mutated(link.encode(), chance, 200)]
+    for text in (*more, *damaged, *(link.replace("/1/", f"/{bad}/") for bad in HUGE_WHOLE)):
+        with suppress(EyasError):
+            read_link(text, session.offer)
     for content in mutated(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n", chance, 50):
         with socket.create_connection(("127.0.0.1", port), 60.0) as out:
             out.sendall(content)

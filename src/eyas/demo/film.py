@@ -109,21 +109,24 @@ def link_of(world: WorldChoice, policy: str, seed: int, offer: Offer) -> FilmLin
     if world.config.custom is not None:
         raise ConfigError("link: not with this target, which another machine does not have")
     chosen = chosen_in(world, offer)
-    usual = choice_of(_usual(), WorldMessage(map=chosen["map"], weather=chosen["weather"]), offer)
-    before = chosen_in(usual, offer)
-    changed = {name: value for name, value in chosen.items() if before[name] != value}
-    head = f"{tags['map']}/{chosen['weather']}/{tags['policy']}/{seed}/{build_of(policy)}"
-    film = read_link(
-        "/".join([head, *(f"{name}={_short(changed[name])}" for name in changed)]), offer
-    )
-    if differ := _differences(film.choice, world):
-        raise ConfigError(f"link: it cannot hold the settings {', '.join(differ)} of this world")
-    return film
+    place = {name: chosen.pop(name) for name in ("map", "weather")}
+    usual = chosen_in(choice_of(_usual(), WorldMessage(**place), offer), offer)
+    head = f"{tags['map']}/{place['weather']}/{tags['policy']}/{seed}/{build_of(policy)}"
+    differ: list[str] = []
+    # What looks as usual in the menus may still be said in the settings.
+    for names in ([name for name in chosen if chosen[name] != usual[name]], [*chosen]):
+        text = "/".join([head, *(f"{name}={_short(chosen[name])}" for name in names)])
+        film = read_link(text, offer)
+        differ = _differences(film.choice, world)
+        if not differ:
+            return film
+    raise ConfigError(f"link: it cannot hold the settings {', '.join(differ)} of this world")
 
 
 def build_of(policy: str) -> str:
     """Return digits that differ where the pictures of a film may."""
-    known = f"{this_build().id} {code_of(Film, libraries=False)}"
+    code = [code_of(one, libraries=False) for one in (Film, WorldChoice, PolicyController)]
+    known = f"{this_build().id} {code}"
     if policy not in POLICIES.built_in:  # a network
         known += this_build().libraries.get("onnxruntime", "")
     return sha256(known.encode()).hexdigest()[:DIGITS]

@@ -161,7 +161,7 @@ class ReferenceStage:
 
     def greeting(self) -> dict[str, Any]:
         """Return which flight is next."""
-        told = {"hello": installed_version(), "protocol": self._plan.protocol}
+        told: dict[str, Any] = {"hello": installed_version(), "protocol": self._plan.protocol}
         told |= {"title": self._plan.rules.title, "back": self._before is not None}
         return told | {"reference": self._thread.stage}
 

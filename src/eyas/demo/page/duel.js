@@ -81,7 +81,7 @@ export class DuelBoard {
     const flights = this.kept()[terms] ?? [];
     const rows = flights.map((flight) => row("td", [flight.day, flight.you, `${flight.name} ${flight.policy}`]));
     by("best").title = t("Flights in this world, with this tracker and this reward");
-    by("best").replaceChildren(...(rows.length ? [row("th", ["Best flights here", "you", "it"].map(t)), ...rows] : []));
+    by("best").replaceChildren(...(rows.length ? [row("th", ["Best flights here", "you", "it"].map((text) => t(text))), ...rows] : []));
   }
 }
 
