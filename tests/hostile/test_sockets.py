@@ -25,6 +25,7 @@ import eyas
 from eyas.engine.core.bounds import FARTHEST
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import EyasError
+from eyas.engine.settings.config import EyasConfig
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.serving import Loop, serve
 from eyas.engine.sim.worlds import together
@@ -321,6 +322,7 @@ def feed_demo(simulation, tmp_path, caplog):
     from websockets.exceptions import ConnectionClosed
     from websockets.sync.client import connect
 
+    from eyas.demo.choices import WorldChoice
     from eyas.demo.film import link_of, read_link
     from eyas.demo.offer import Offer
     from eyas.demo.run import listen
@@ -353,7 +355,7 @@ def feed_demo(simulation, tmp_path, caplog):
         with page() as connection, suppress(ConnectionClosed):
             for text in texts[first : first + 15]:
                 connection.send(text.decode(errors="ignore"))
-    link = link_of(session.builder.plan, "follow", 1, session.offer).text
+    link = link_of(WorldChoice(EyasConfig(), 40), "follow", 1, session.offer).text
     more = [f"{link}/{name}={value:g}" for name in ("hour", "people") for value in NUMBERS]
     damaged = [content.decode(errors="replace") for content in mutated(link.encode(), chance, 200)]
     for text in (*more, *damaged, *(link.replace("/1/", f"/{bad}/") for bad in HUGE_WHOLE)):

@@ -112,15 +112,16 @@ def link_of(world: WorldChoice, policy: str, seed: int, offer: Offer) -> FilmLin
     place = {name: chosen.pop(name) for name in ("map", "weather")}
     usual = chosen_in(choice_of(_usual(), WorldMessage(**place), offer), offer)
     head = f"{tags['map']}/{place['weather']}/{tags['policy']}/{seed}/{build_of(policy)}"
-    differ: list[str] = []
+    missed: list[list[str]] = []
     # What looks as usual in the menus may still be said in the settings.
     for names in ([name for name in chosen if chosen[name] != usual[name]], [*chosen]):
         text = "/".join([head, *(f"{name}={_short(chosen[name])}" for name in names)])
         film = read_link(text, offer)
-        differ = _differences(film.choice, world)
-        if not differ:
+        missed.append(_differences(film.choice, world))
+        if not missed[-1]:
             return film
-    raise ConfigError(f"link: it cannot hold the settings {', '.join(differ)} of this world")
+    differ = ", ".join(min(missed, key=len))
+    raise ConfigError(f"link: it cannot hold the settings {differ} of this world")
 
 
 def build_of(policy: str) -> str:
