@@ -120,8 +120,8 @@ def link_of(world: WorldChoice, policy: str, seed: int, offer: Offer) -> FilmLin
         missed.append(_differences(film.choice, world))
         if not missed[-1]:
             return film
-    differ = ", ".join(min(missed, key=len))
-    raise ConfigError(f"link: it cannot hold the settings {differ} of this world")
+    fewest = min(missed, key=len)
+    raise ConfigError(f"link: it cannot hold the settings {', '.join(fewest)} of this world")
 
 
 def build_of(policy: str) -> str:
