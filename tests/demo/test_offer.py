@@ -75,7 +75,7 @@ def test_an_own_target_is_followed_and_called_by_its_name(folder):
 
 
 def test_targets_are_in_words(folder):
-    assert words_of("SUMO_VEHICLE") == "cars and other vehicles"
+    assert words_of("SUMO_VEHICLE") == "cars and more"
     assert words_of("AiboErs7") == "a white robot puppy with a black face"
 
 

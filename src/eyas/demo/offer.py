@@ -27,7 +27,7 @@ _LOG = logging.getLogger("eyas")
 BOXES = "boxes"  # The name under which a tracker outside flies
 BUILT_IN = ("follow", "servo")
 
-_SEVERAL = {"SUMO_VEHICLE": "cars and other vehicles", "Pedestrian": "people"}
+_SEVERAL = {"SUMO_VEHICLE": "cars and more", "Pedestrian": "people"}
 
 _MOST = 100  # Largest number of files of a kind in a menu
 _NETWORKS = tuple(ending for ending in FILES if ending not in (*PICKLED, FLIGHTS, ".json"))

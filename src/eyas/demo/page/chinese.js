@@ -54,7 +54,7 @@ export const CHINESE = {
   continuous: "连续", discrete: "离散",
   World: "世界", Target: "目标", Tracker: "飞行器", drone: "无人机", "drone with physics": "带动力学的无人机", car: "汽车",
   "Time of day": "时刻", Light: "光照", Traffic: "车流", "People around": "周围的行人", none: "无", "{} cars": "{} 辆车",
-  "as the weather has it": "随天气", bright: "明亮", dim: "昏暗", dark: "黑暗", "{} h": "{} 时",
+  "by the weather": "随天气", bright: "明亮", dim: "昏暗", dark: "黑暗", "{} h": "{} 时",
   State: "状态", "how central": "居中程度", offset: "水平偏移", height: "高度", speed: "速度", climb: "爬升",
   "yaw rate": "偏航角速度", camera: "相机", target: "目标", model: "型号", "its speed": "目标速度", time: "时间",
   "A training episode would end:": "训练回合会结束：", "A training episode would go on.": "训练回合会继续。",
@@ -116,7 +116,7 @@ export const CHINESE = {
 
 // Targets in words.
 export const TARGETS = {
-  "cars and other vehicles": "汽车和其他车辆", people: "行人", custom: "设置中的目标",
+  "cars and more": "汽车和其他车辆", people: "行人", custom: "设置中的目标",
   "a blue robot rover on six wheels": "蓝色六轮机器人", "a white disc-shaped robot": "白色圆盘机器人",
   "a gold robot rover under a solar panel": "太阳能板下的金色漫游车", "a dark grey walking machine on six legs": "深灰色六足步行机",
   "a white and orange robot that rolls on a ball": "白橙色球形机器人", "a white robot puppy with a black face": "黑脸白色机器小狗",

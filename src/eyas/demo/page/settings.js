@@ -6,8 +6,8 @@ import { named, t } from "./words.js";
 const SLIDERS = ["view_range", "view_scale", "distance_range", "distance_scale"];
 const NUMBERS = ["vehicles", "people", "hour"];
 const PEOPLE = [0, 10, 30, 60];
-const LIGHTS = { own: "as the weather has it" };
-const HOURS = { own: "as the weather has it", 5: "5:00", 7: "7:00", 9: "9:00", 12: "12:00", 15: "15:00", 17: "17:00", 19: "19:00", 20: "20:00", 22: "22:00" };
+const LIGHTS = { own: "by the weather" };
+const HOURS = { own: "by the weather", 5: "5:00", 7: "7:00", 9: "9:00", 12: "12:00", 15: "15:00", 17: "17:00", 19: "19:00", 20: "20:00", 22: "22:00" };
 const by = (id) => document.getElementById(id);
 
 export class Settings {
