@@ -62,7 +62,7 @@ def test_an_own_target_is_followed_and_called_by_its_name(folder):
     base = updated(EyasConfig(), {"world": {"map": "simpleway-grass"}})
     offer, before = Offer.of(base), WorldChoice(base, 40)
     name = "targets/delivery_fox.urdf"
-    assert words_of(name) == "delivery_fox"
+    assert words_of(name) == "delivery fox"
     own = choice_of(before, WorldMessage(target=name), offer)
     assert chosen_in(own, offer)["target"] == name
     assert readings(own.build())["target"]["words"] == "a delivery fox"

@@ -163,7 +163,11 @@ def _map_tag(name: str) -> str:
     if name in MAPS.built_in:
         return name
     recipe = MAPS.get(name)
-    if (data := recipe.data_hash()) is None:
+    try:
+        data = recipe.data_hash()
+    except OSError:  # it was there a moment ago
+        return ""
+    if data is None:
         return ""
     known = f"{data} {sorted(recipe.checksums.items())}"
     return f"{recipe.name}~{sha256(known.encode()).hexdigest()[:DIGITS]}"
@@ -173,8 +177,12 @@ def _policy_tag(name: str) -> str:
     """Return what a link calls a policy; nothing if other machines cannot have the same."""
     if name in (*POLICIES.built_in, *shipped_names()):
         return name
-    slow = name == BOXES or name.endswith(".json")  # what is outside answers as it likes
-    digest = None if slow else fingerprint(name)
+    if name == BOXES or name.endswith(".json"):  # what is outside answers as it likes
+        return ""
+    try:
+        digest = fingerprint(name)
+    except OSError:
+        return ""
     return f"~{digest[:DIGITS]}" if digest else ""
 
 

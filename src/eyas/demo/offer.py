@@ -91,7 +91,7 @@ def _targets(config: EyasConfig, folder: Path) -> Iterator[tuple[str, dict[str, 
 def words_of(target: str) -> str:
     """Return a target of the menu in words; of a file its name."""
     known = {**{kind.name: kind.models[0].words[0] for kind in KINDS}, **_SEVERAL}
-    return known.get(target, Path(target).stem)
+    return known.get(target, Path(target).stem.replace("_", " "))
 
 
 def _policies(folder: Path) -> Iterator[str]:
