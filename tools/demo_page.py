@@ -13,7 +13,7 @@ import time
 from playwright.sync_api import sync_playwright
 
 SIZE = {"width": 1360, "height": 820}
-FLOWN = 12.0  # Time until the picture is taken [s]
+FLOWN = 20.0  # Time until the picture is taken, when no tree hides the car [s]
 
 
 def main() -> None:

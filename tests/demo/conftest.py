@@ -214,9 +214,15 @@ def browser():
 
 def until(page, truth, seconds=40):
     """Wait until something is true of the page; its policy forbids what playwright has for that."""
+    from playwright.sync_api import Error
+
     end = time.monotonic() + seconds
     while time.monotonic() < end:
-        if page.evaluate(truth):
-            return
+        try:
+            if page.evaluate(truth):
+                return
+        except Error as error:
+            if "navigation" not in str(error):  # the page loads anew
+                raise
         time.sleep(0.05)
     raise AssertionError(f"not within {seconds} s: {truth}; {page.evaluate('window.eyas.state')}")

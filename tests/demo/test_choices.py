@@ -5,8 +5,10 @@ import sys
 
 import pytest
 
-from eyas.demo.choices import WorldChoice, choice_of
+from eyas.demo import choices
+from eyas.demo.choices import WorldChoice
 from eyas.demo.messages import WorldMessage
+from eyas.demo.offer import Offer
 from eyas.demo.run import session_of
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import UnknownNameError
@@ -17,6 +19,10 @@ from eyas.engine.sim.crowd import extras_of
 
 class BuildError(Exception):
     """Holds the plan that a demo wants to build."""
+
+
+def choice_of(before, said):
+    return choices.choice_of(before, said, Offer.of(before.config))
 
 
 def first(config):

@@ -196,6 +196,19 @@ def test_sliders_have_names(page):
         assert page.get_by_role("slider", name=name).count() == 1
 
 
+def test_the_best_flights_are_listed_in_both_languages(page):
+    page.evaluate(
+        """import("/duel.js").then(({ DuelBoard }) => {
+          const board = new DuelBoard();
+          board.keep({ policy: "follow", scores: { you: 3, policy: 2 } }, "x");
+        })"""
+    )
+    until(page, "document.getElementById('best').textContent.includes('follow 2')")
+    page.click("#language")
+    page.evaluate("import('/duel.js').then(({ DuelBoard }) => new DuelBoard().list('x'))")
+    until(page, "document.getElementById('best').textContent.includes('此处最佳成绩')")
+
+
 def test_a_duel_counts_down_over_the_picture(page):
     page.click("#duel")
     until(page, "document.getElementById('countdown').textContent === '2'")
@@ -203,21 +216,192 @@ def test_a_duel_counts_down_over_the_picture(page):
     until(page, "document.getElementById('countdown').hidden")
 
 
-def test_on_a_phone_held_sideways_nothing_covers_the_controls(browser, served, page):
-    context = browser.new_context(
-        viewport={"width": 844, "height": 390}, has_touch=True, is_mobile=True
-    )
-    phone = context.new_page()
-    phone.goto(served.address)
-    until(phone, "window.eyas !== undefined && !document.getElementById('watching').hidden")
-    notice = phone.locator("#watching").bounding_box()
-    for button in phone.locator("#touch button").all():
-        box = button.bounding_box()
-        assert box["y"] >= notice["y"] + notice["height"] or (
-            box["x"] >= notice["x"] + notice["width"] or box["x"] + box["width"] <= notice["x"]
-        )
-    panel = phone.locator("#panel").bounding_box()
-    for value in phone.locator("#kinds b").all():
+COVERED = """(() => {
+  const hits = (a, b) =>
+    Math.min(a.right, b.right) > Math.max(a.left, b.left) + 1 &&
+    Math.min(a.bottom, b.bottom) > Math.max(a.top, b.top) + 1;
+  const over = document.querySelectorAll("#top, #notice, #watching, #flies, #minimap, #panel");
+  const found = [];
+  for (const button of document.querySelectorAll("#touch button")) {
+    const place = button.getBoundingClientRect();
+    const middle = document.elementFromPoint(place.x + place.width / 2, place.y + place.height / 2);
+    if (middle !== button) found.push(`${button.title}: behind ${middle?.id}`);
+    for (const other of over) {
+      if (other.hidden || !hits(place, other.getBoundingClientRect())) continue;
+      found.push(`${button.title}: under ${other.id}`);
+    }
+  }
+  return found;
+})()"""
+
+
+@pytest.fixture
+def phone(browser, served):
+    """Opens the page on a phone of a size; it has the controls."""
+    with contextlib.ExitStack() as stack:
+
+        def opened(width, height):
+            size = {"width": width, "height": height}
+            how = {"viewport": size, "has_touch": True, "is_mobile": True}
+            page = stack.enter_context(browser.new_context(**how)).new_page()
+            page.goto(served.address)
+            until(page, "window.eyas !== undefined && document.getElementById('watching').hidden")
+            return page
+
+        yield opened
+
+
+@pytest.mark.parametrize("size", [(390, 844), (844, 390), (360, 640), (640, 360)])
+def test_on_a_phone_nothing_covers_the_controls(phone, size):
+    page = phone(*size)
+    page.fill("#link", "x" * 60)
+    page.press("#link", "Enter")  # refused in some lines
+    until(page, "!document.getElementById('notice').hidden")
+    page.evaluate("scrollTo(0, 0)")
+    assert page.evaluate(COVERED) == []
+    assert not page.evaluate("document.documentElement.scrollWidth > innerWidth")
+    tops = page.evaluate("[...document.querySelectorAll('header > *')].map((e) => e.offsetTop)")
+    assert len({top // 30 for top in tops if top}) <= 2  # rows of the head
+    panel = page.locator("#panel").bounding_box()
+    for value in page.locator("#kinds b").all():
         box = value.bounding_box()
         assert box["x"] + box["width"] <= panel["x"] + panel["width"]
+
+
+def test_who_watches_has_no_controls_on_the_screen(page, phone):
+    page.bring_to_front()
+    page.set_viewport_size({"width": 390, "height": 844})
+    other = page.context.new_page()
+    other.goto(page.url)
+    until(other, "window.eyas && !document.getElementById('watching').hidden")
+    assert other.locator("[data-control=climb]").is_hidden()
+    assert page.locator("[data-control=climb]").is_visible()
+    other.close()
+
+
+def test_what_is_fun_comes_first(page):
+    buttons = page.locator("#panel button").all()
+    assert [button.get_attribute("id") for button in buttons[:3]] == ["duel", "fly", "film"]
+    assert page.locator("#duel").bounding_box()["y"] < 60
+
+
+UNNAMED = """[...document.querySelectorAll("button, select, input, a[href], canvas")]
+  .filter((e) => !(e.ariaLabel || e.labels?.length || /\\p{L}/u.test(e.textContent)))
+  .map((e) => e.outerHTML)"""
+
+
+def test_every_control_has_a_name_and_can_be_reached_by_keys(page):
+    assert page.evaluate(UNNAMED) == []
+    wanted = page.evaluate(
+        "[...document.querySelectorAll(':is(header, #panel) :is(button, select, input, a)')]"
+        ".filter((e) => e.checkVisibility() && !e.disabled).length"
+    )
+    page.evaluate("document.activeElement.blur()")
+    reached = []
+    for _ in range(wanted):
+        page.keyboard.press("Tab")
+        reached.append(page.evaluate("document.activeElement.outerHTML"))
+    assert len(set(reached)) == wanted
+    assert 'id="map"' in reached[0]
+
+
+def test_the_keyboard_operates_buttons_and_sliders_and_stays_there(page):
+    page.focus("#view_scale")
+    before = float(page.input_value("#view_scale"))
+    page.keyboard.press("ArrowRight")
+    assert float(page.input_value("#view_scale")) > before
+    assert page.evaluate("document.activeElement.id") == "view_scale"
+    page.focus("#overlay")
+    page.keyboard.press("Enter")
+    until(page, "eyas.state.marks")
+    assert page.evaluate("document.activeElement.id") == "overlay"
+
+
+LATIN = """(() => {
+  const english = (text) => /[a-z]{3}/.test(text) && !/\\p{Script=Han}/u.test(text);
+  const found = new Set(), nodes = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  const named = "kbd, #language, select, .brand, label[for], #link-line, #line, #numbers, h1";
+  while (nodes.nextNode()) {
+    const { data, parentElement } = nodes.currentNode;
+    if (english(data) && !parentElement.closest(named)) found.add(data);
+  }
+  for (const name of ["title", "aria-label", "placeholder"]) {
+    for (const element of document.querySelectorAll(`[${name}]:not(#language, option, dd)`)) {
+      const text = element.getAttribute(name);
+      if (english(text)) found.add(text);
+    }
+  }
+  return [...found];
+})()"""
+
+
+def test_a_chinese_browser_gets_all_of_the_page_in_chinese(browser, served, page):
+    context = browser.new_context(locale="zh-CN")
+    chinese = context.new_page()
+    for path in ("", "reference.html"):
+        chinese.goto(served.address + path)
+        until(chinese, "document.documentElement.lang === 'zh-CN'")
+        if not path:
+            until(chinese, "window.eyas !== undefined && window.eyas.world")
+        assert chinese.evaluate(LATIN) == [], path
     context.close()
+
+
+def test_the_switch_changes_the_language_and_is_kept(page):
+    assert page.locator("#duel").text_content() == "You against it: 60 s"
+    page.click("#language")
+    until(page, "document.getElementById('duel').textContent === '与它对决\uff1a60 秒'")
+    assert page.evaluate("document.documentElement.lang") == "zh-CN"
+    assert page.locator("#target option").first.text_content() == "汽车和其他车辆"
+    page.reload()
+    until(page, "document.getElementById('fly').textContent === '让它飞'")
+    page.click("#language")
+    until(page, "document.getElementById('fly').textContent === 'Let it fly'")
+    assert page.locator("#target option").first.text_content() == "cars and more"
+
+
+def test_targets_are_in_words_in_both_languages(page):
+    said = page.evaluate(
+        """import("/words.js").then(({ named, switchLanguage }) => {
+          switchLanguage();
+          const all = ["a small green car", "a dark blue sedan", "a red bus", "an orange scooter",
+            "a pedestrian in an orange down jacket", "a delivery fox"].map(named);
+          switchLanguage();
+          return all;
+        })"""
+    )
+    chinese = [
+        "绿色小汽车",
+        "深蓝色轿车",
+        "红色公交车",
+        "橙色踏板摩托车",
+        "穿橙色羽绒服的行人",
+        "delivery fox",
+    ]
+    assert said[:5] == chinese[:5]
+    until(page, "/^an? [a-z]/.test(eyas.state.target.words)")
+
+
+def test_the_link_of_a_film_plays_it_and_a_wrong_one_is_one_line(page):
+    page.click("#film")
+    until(page, "eyas.state.film && document.getElementById('link').value !== ''", seconds=120)
+    link = page.input_value("#link")
+    assert page.url.endswith(f"#{link}")
+    until(page, "eyas.state.size[0] === 640 && eyas.state.size[1] === 480")
+    page.keyboard.press("ArrowUp")
+    until(page, "eyas.state.film === null")
+    page.fill("#link", link.replace("simpleway", "complexway"))
+    page.press("#link", "Enter")
+    until(page, "document.getElementById('notice').textContent.startsWith('link: map: ')")
+    page.fill("#link", link)
+    page.press("#link", "Enter")
+    until(page, "eyas.state.film")
+    assert state(page)["film"]["link"] == link
+
+
+def test_flights_for_the_leaderboard_begin_in_the_page_and_lead_back(page):
+    page.select_option("#protocol", "paper")
+    page.click("#record-for")
+    until(page, "document.title.includes('leaderboard')")
+    page.click("#back")  # once the flight is made, which goes on meanwhile
+    until(page, "document.title === 'Eyas: fly it' && window.eyas !== undefined", seconds=200)

@@ -24,6 +24,8 @@ import pytest
 import eyas
 from eyas.engine.core.bounds import FARTHEST
 from eyas.engine.core.config import updated
+from eyas.engine.core.errors import EyasError
+from eyas.engine.settings.config import EyasConfig
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.serving import Loop, serve
 from eyas.engine.sim.worlds import together
@@ -309,6 +311,9 @@ DEMO = {
     "box": {"box": [0.1, 0.1, 0.2, 0.2]},
     "ready": {"pilot": "1", "device": "touch"},
     "leave": {},
+    "film": {"link": "desert-bare/day/follow/1/00000000/hour=9"},
+    "duel": {"policy": "follow"},
+    "stage": {"protocol": "none"},
 }
 
 
@@ -317,12 +322,16 @@ def feed_demo(simulation, tmp_path, caplog):
     from websockets.exceptions import ConnectionClosed
     from websockets.sync.client import connect
 
+    from eyas.demo.choices import WorldChoice
+    from eyas.demo.film import link_of, read_link
+    from eyas.demo.offer import Offer
     from eyas.demo.run import listen
     from eyas.demo.server import DemoServer
     from eyas.demo.session import Session
     from eyas.demo.stages import FreeStage
 
-    session = Session(updated(AS_FLOWN, SMALL), ("follow",), tmp_path)
+    config = updated(AS_FLOWN, SMALL)
+    session = Session(config, lambda: Offer.of(config, folder=tmp_path), tmp_path)
     listening, chance, loop = listen("127.0.0.1", 0), random.Random(6), asyncio.new_event_loop()
     port, begun = listening.getsockname()[1], threading.Event()
     server = loop.create_task(
@@ -346,6 +355,12 @@ def feed_demo(simulation, tmp_path, caplog):
         with page() as connection, suppress(ConnectionClosed):
             for text in texts[first : first + 15]:
                 connection.send(text.decode(errors="ignore"))
+    link = link_of(WorldChoice(EyasConfig(), 40), "follow", 1, session.offer).text
+    more = [f"{link}/{name}={value:g}" for name in ("hour", "people") for value in NUMBERS]
+    damaged = [content.decode(errors="replace") for content in mutated(link.encode(), chance, 200)]
+    for text in (*more, *damaged, *(link.replace("/1/", f"/{bad}/") for bad in HUGE_WHOLE)):
+        with suppress(EyasError):
+            read_link(text, session.offer)
     for content in mutated(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n", chance, 50):
         with socket.create_connection(("127.0.0.1", port), 60.0) as out:
             out.sendall(content)

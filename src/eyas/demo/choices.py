@@ -6,8 +6,10 @@ from typing import Any
 
 from eyas.demo.flight import DemoFlight
 from eyas.demo.messages import LIGHTS, Light, WorldMessage
+from eyas.demo.offer import Offer
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import EyasError, UnknownNameError
+from eyas.engine.custom.config import CustomConfig
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.sim.crowd import extras_of
 from eyas.engine.targets.config import TargetName
@@ -40,11 +42,12 @@ class WorldChoice:
         return DemoFlight(self.config, self.vehicles)
 
 
-def choice_of(before: WorldChoice, said: WorldMessage) -> WorldChoice:
+def choice_of(before: WorldChoice, said: WorldMessage, offer: Offer) -> WorldChoice:
     """Return a plan with what a page has chosen.
 
     Args:
         before: The plan, for what was not chosen.
+        offer: What it may choose.
 
     Raises:
         ConfigError: A setting does not fit to the others, or a map or weather does not exist.
@@ -53,9 +56,11 @@ def choice_of(before: WorldChoice, said: WorldMessage) -> WorldChoice:
         "world": said.model_dump(include={"map", "weather"}, exclude_none=True)
     }
     now = before.config.world
-    if said.map is not None and said.map not in (now.map, *MAPS.names()):
-        # A page must not name code or folders of this machine, which a setting may.
-        raise UnknownNameError("world.map", said.map, MAPS.names())
+    # A page must not name code or folders of this machine, which a setting may.
+    if said.map is not None and said.map not in (now.map, *offer.maps):
+        raise UnknownNameError("world.map", said.map, tuple(offer.maps))
+    if said.target is not None and said.target not in offer.targets:
+        raise UnknownNameError("target", said.target, tuple(offer.targets))
     recipe = MAPS.get(said.map or now.map)
     if said.weather is not None and said.weather not in (now.weather, *recipe.weathers):
         raise UnknownNameError("world.weather", said.weather, recipe.weathers)
@@ -63,7 +68,7 @@ def choice_of(before: WorldChoice, said: WorldMessage) -> WorldChoice:
     changes["world"]["hour"] = hour
     lighting = recipe.light(said.weather or now.weather, hour, now.moon)
     if said.target is not None:
-        changes["target"] = said.target
+        changes |= offer.targets[said.target]
     if said.tracker is not None:
         changes["tracker"] = _TRACKERS[said.tracker]
     light = said.light or before.light
@@ -103,23 +108,35 @@ def _count(config: EyasConfig) -> int:
     return sum(extra.count for extra in extras_of(config))
 
 
-def world_of(plan: WorldChoice, flight: DemoFlight) -> dict[str, Any]:
+def world_of(plan: WorldChoice, flight: DemoFlight, offer: Offer) -> dict[str, Any]:
     """Return what is chosen, for the menus."""
+    return {"world": chosen_in(plan, offer) | {"parked": flight.world.parked >= 0}}
+
+
+def chosen_in(plan: WorldChoice, offer: Offer) -> dict[str, Any]:
+    """Return what each menu shows of a plan."""
     config = plan.config
     tracker = config.tracker
     flown = tracker.kind is TrackerKind.DRONE and not tracker.supervised
-    chosen = {
+    return {
         "map": config.world.map,
         "weather": config.world.weather,
         "vehicles": plan.vehicles,
-        "target": config.target.value,
+        "target": _target_of(config, offer),
         "tracker": "flown" if flown else str(tracker.kind),
         "light": plan.light,
         "hour": "own" if config.world.hour is None else config.world.hour,
         "people": _count(config),
-        "parked": flight.world.parked >= 0,
     }
-    return {"world": chosen}
+
+
+def _target_of(config: EyasConfig, offer: Offer) -> str:
+    """Return the name under which the menu has the target."""
+    for name, changes in offer.targets.items():
+        custom = changes["custom"]
+        if custom is not None and config.custom == CustomConfig(**custom):
+            return name
+    return config.target.value
 
 
 class Builder:
@@ -174,3 +191,4 @@ class Builder:
     def stop(self) -> None:
         """Wait for a world that is being built, and drop it."""
         self._threads.shutdown(cancel_futures=True)
+        self._threads = ThreadPoolExecutor(1, "eyas-world")  # it may go on after other flights

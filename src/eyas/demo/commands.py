@@ -1,4 +1,4 @@
-"""`eyas demo`."""
+"""`eyas demo` and `eyas replay`."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -128,3 +128,25 @@ def _record(plan: "EvaluationPlan", host: str, port: int, *, browser: bool) -> N
     demo.run_browser(ReferenceStage(plan), host, listening, browser=browser, say=typer.echo)
     folder = Path(plan.policy).parent
     typer.echo(f"{folder}: {plan.count} flights; 'eyas leaderboard pack {folder}' makes an entry")
+
+
+def replay(
+    link: Annotated[
+        str, typer.Argument(help="Link of a film, as the demo's page makes it, or its address.")
+    ],
+    out: Annotated[
+        Path | None, to_write("Folder to record it into, as eyas video does; by default nowhere.")
+    ] = None,
+    seconds: Annotated[
+        float, typer.Option("--seconds", min=0.04, max=60.0, help="How much of it.")
+    ] = 60.0,
+) -> None:
+    """Fly the film of a link again, with the same bytes, and print their digest."""
+    from eyas.demo.film import SIZE, flown, read_link
+    from eyas.demo.offer import Offer
+    from eyas.engine.settings.config import EyasConfig
+
+    film = flown(read_link(link, Offer.of(EyasConfig())), seconds, out)
+    typer.echo(f"{film.pictures} pictures of {SIZE[0]} x {SIZE[1]}, digest {film.digest}")
+    if out is not None:
+        typer.echo(f"{out}: 'eyas open {out}' shows it")

@@ -93,7 +93,7 @@ class PolicyController:
         self._steps = physics_steps(flight.config.control.frequency) * env.action_repeat
         self._size = env.observation.height, env.observation.width
         self._begun = np.ones(1, np.bool_)
-        seeds = np.array([flight.config.seed])
+        seeds = np.array([flight.seed])
         roads = self._simulation.scene.network
         self._policy.begin(Start(seeds, self._boxes, roads=lambda: [roads]))
 

@@ -2,4 +2,9 @@
 
 from eyas.engine.core.doors import House
 
-HOUSE = House(results=False, brings={"eyas.commands": {"demo": "eyas.demo.commands:demo"}})
+HOUSE = House(
+    results=False,
+    brings={
+        "eyas.commands": {"demo": "eyas.demo.commands:demo", "replay": "eyas.demo.commands:replay"}
+    },
+)

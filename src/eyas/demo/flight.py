@@ -202,6 +202,7 @@ class DemoFlight:
 
     Attributes:
         config: The settings; those of the reward change while it flies.
+        seed: The seed of its episodes.
         world: Simulation and map.
 
     Args:
@@ -212,7 +213,7 @@ class DemoFlight:
     """
 
     def __init__(self, config: EyasConfig, vehicles: int) -> None:
-        self.config, self.vehicles = config, vehicles
+        self.config, self.vehicles, self.seed = config, vehicles, config.seed
         self.world = build_world(config, vehicles)
         self.simulation = self.world.simulation
         self._start_pitch = 0.0
@@ -228,6 +229,7 @@ class DemoFlight:
         """Put the drone back over its target, or begin the one episode of a seed."""
         target = self.target
         if seed is not None:
+            self.seed = seed
             self.simulation.reseed(seed)
             self.simulation.rewind()
         self.simulation.reset()

@@ -8,7 +8,14 @@ from typing import Any, Protocol
 
 from eyas.demo.frame import DemoFrame
 from eyas.demo.messages import Message, WorldMessage
-from eyas.demo.orders import carry_out, change_sides, end_recording, enter_new_world, world_now
+from eyas.demo.orders import (
+    carry_out,
+    change_sides,
+    end_film,
+    end_recording,
+    enter_new_world,
+    world_now,
+)
 from eyas.demo.session import FRAME, Session
 from eyas.engine.core.errors import EyasError
 from eyas.engine.core.faults import FaultLog
@@ -65,11 +72,12 @@ class FlightThread:
             self._try(lambda: end_recording(self.session))
             self.session.builder.stop()
 
-    def _fly(self, now: float) -> None:
-        """Fly until now, and let the other side of a duel begin."""
+    def _fly(self, now: float) -> dict[str, Any] | None:
+        """Fly until now, let the other side of a duel begin, and end a film that is over."""
         self.session.advance(now)
         if self.session.sides_change:
             change_sides(self.session)
+        return end_film(self.session)
 
     def _hear(self, due: float) -> bool:
         """Carry out messages until the next frame is due; return whether to go on."""
@@ -103,7 +111,7 @@ class FlightThread:
 
     def _stay(self) -> None:
         """Let the menus show the present world, after another could not be built."""
-        self.session.duel_later = None
+        self.session.duel_later = self.session.film_later = None
         self._audience.tell(world_now(self.session))
 
     def _drop_controller(self) -> None:

@@ -10,10 +10,10 @@ from eyas.demo.controls import Control
 from eyas.demo.frame import Coding
 from eyas.engine.core.config import Config, validated
 from eyas.engine.core.errors import ConfigError, UnknownNameError
-from eyas.engine.targets.config import TargetName
 from eyas.engine.task.config import RewardMode, RewardType
 
 LONGEST = 4096  # Largest message [bytes]
+LONGEST_LINK = 300  # Of a film, with the address before it [characters]
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Side = Annotated[int, Field(ge=16, le=16384)]
@@ -103,7 +103,7 @@ class WorldMessage(Message):
     map: Name | None = None
     weather: Name | None = None
     vehicles: Annotated[int, Field(ge=1, le=100)] | None = None
-    target: TargetName | None = None
+    target: Name | None = None
     tracker: Literal["drone", "flown", "car"] | None = None
     light: Light | None = None
     hour: Hour | Literal["own"] | None = None
@@ -122,6 +122,13 @@ class DuelMessage(Message):
     """The same minute flown by the pilot and by a policy; None: give up."""
 
     policy: Name | None
+
+
+class FilmMessage(Message):
+    """A film by its link, or a new one of a policy in this world."""
+
+    link: Annotated[str, Field(max_length=LONGEST_LINK)] | None = None
+    policy: Name | None = None
 
 
 class RecordMessage(Message):
@@ -150,6 +157,12 @@ class LeaveMessage(Message):
     """The flight that is recorded is left, and counts as far as it was flown."""
 
 
+class StageMessage(Message):
+    """Fly for the leaderboard, in a protocol; None: freely."""
+
+    protocol: Name | None
+
+
 _KINDS: dict[str, type[Message]] = {
     "keys": KeysMessage,
     "ack": AckMessage,
@@ -162,10 +175,12 @@ _KINDS: dict[str, type[Message]] = {
     "world": WorldMessage,
     "fly": FlyMessage,
     "duel": DuelMessage,
+    "film": FilmMessage,
     "record": RecordMessage,
     "box": BoxMessage,
     "ready": ReadyMessage,
     "leave": LeaveMessage,
+    "stage": StageMessage,
 }
 
 

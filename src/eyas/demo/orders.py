@@ -1,5 +1,6 @@
 """What each message of the pilot's page does."""
 
+import secrets
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -8,15 +9,16 @@ from typing import Any
 from eyas.demo import messages as said
 from eyas.demo.choices import choice_of, world_of
 from eyas.demo.controllers import SEED, BoxController, Controller, Duel, PolicyController
+from eyas.demo.film import FilmLink, begun, link_of, read_link
+from eyas.demo.offer import BOXES
 from eyas.demo.recording import DemoRecording
 from eyas.demo.session import Session
 from eyas.engine.core.errors import ConfigError, EyasError, UnknownNameError
 
-BOXES = "boxes"  # The name under which a tracker outside flies
-
 _UNFAIR = (
     said.ClickMessage,
     said.DoMessage,
+    said.FilmMessage,
     said.FlyMessage,
     said.PaceMessage,
     said.RecordMessage,
@@ -38,6 +40,8 @@ def carry_out(session: Session, message: said.Message) -> dict[str, Any] | None:
         raise ConfigError("a flight against a policy goes on; give it up first")
     if type(message) not in _ORDERS:
         raise ConfigError("message: only in 'eyas demo --record-for PROTOCOL'")
+    if isinstance(message, said.ClickMessage | said.DoMessage):
+        session.film = None  # what flies it flies on, elsewhere
     return _ORDERS[type(message)](session, message)
 
 
@@ -58,8 +62,8 @@ def let_fly(session: Session, name: str) -> None:
 
 def _require_known(session: Session, name: str) -> None:
     """Refuse policies that are not offered: a page must not name code or files of this machine."""
-    if name not in (*session.policies, BOXES):
-        raise UnknownNameError("policy", name, (*session.policies, BOXES))
+    if name not in (known := (*session.offer.policies, BOXES)):
+        raise UnknownNameError("policy", name, known)
 
 
 def open_with_a_chase(session: Session) -> None:
@@ -160,7 +164,7 @@ def reward_of(session: Session) -> dict[str, Any]:
 
 def world_now(session: Session) -> dict[str, Any]:
     """Return what the menus show, and what is being built instead, if anything."""
-    told = world_of(session.builder.flown, session.flight)
+    told = world_of(session.builder.flown, session.flight, session.offer)
     return told | _busy(session)
 
 
@@ -170,7 +174,9 @@ def _busy(session: Session) -> dict[str, Any]:
 
 
 def _world(session: Session, message: said.WorldMessage) -> dict[str, Any]:
-    session.builder.order(choice_of(session.builder.plan, message))
+    choice = choice_of(session.builder.plan, message, session.offer)
+    session.film_later = None
+    session.builder.order(choice)
     return _busy(session)
 
 
@@ -185,14 +191,15 @@ def enter_new_world(session: Session) -> dict[str, Any] | None:
         return None
     ended = end_recording(session) or {}
     session.duel, rival = None, session.duel_later
-    session.duel_later = None
+    film, session.duel_later, session.film_later = session.film_later, None, None
     new.adopt_reward(session.flight)
     view = session.screen.view
     session.begin_flight(new)
     session.screen.view = view
     if rival is not None:
         _duel(session, said.DuelMessage(policy=rival))
-    return ended | world_now(session)
+    shown = play(session, film) if film is not None else None
+    return ended | world_now(session) | (shown or {})
 
 
 def _fly(session: Session, message: said.FlyMessage) -> None:
@@ -208,6 +215,7 @@ def _duel(session: Session, message: said.DuelMessage) -> dict[str, Any] | None:
         session.hand_over(None, None)
         return None
     _require_known(session, message.policy)
+    session.film_later = None
     if session.builder.busy:
         session.duel_later = message.policy
         return {"say": f"You against {message.policy}: begins in the new world."}
@@ -217,6 +225,43 @@ def _duel(session: Session, message: said.DuelMessage) -> dict[str, Any] | None:
     session.duel = Duel(message.policy, time.monotonic())
     change_sides(session)
     return None
+
+
+def _film(session: Session, message: said.FilmMessage) -> dict[str, Any] | None:
+    if message.link is not None:
+        return play(session, read_link(message.link, session.offer))
+    if message.policy is None:
+        raise ConfigError("film: link or policy is missing")
+    _require_known(session, message.policy)
+    seed = secrets.randbelow(100_000)
+    return play(session, link_of(session.builder.flown, message.policy, seed, session.offer))
+
+
+def play(session: Session, link: FilmLink) -> dict[str, Any] | None:
+    """Fly a film, once its world is there; return what all should be told.
+
+    Raises:
+        EyasError: Its policy cannot fly.
+    """
+    session.duel = session.duel_later = None
+    if session.builder.busy or not link.same_world(session.builder.flown):
+        session.film_later = link
+        session.builder.order(link.choice)
+        return _busy(session)
+    ended = end_recording(session)
+    film, controller = begun(link, session.flight)
+    session.hand_over(controller, link.policy)
+    session.film, session.clock.speed = film, 1.0
+    return (ended or {}) | {"film": film.state()}
+
+
+def end_film(session: Session) -> dict[str, Any] | None:
+    """End the film that is over, if there is one; return what all should be told."""
+    film = session.film
+    if film is None or not film.over:
+        return None
+    session.hand_over(None, None)
+    return {"film": film.state()}
 
 
 def _record(session: Session, message: said.RecordMessage) -> dict[str, Any] | None:
@@ -244,6 +289,7 @@ _ORDERS: dict[type[said.Message], Callable[[Session, Any], dict[str, Any] | None
     said.WorldMessage: _world,
     said.FlyMessage: _fly,
     said.DuelMessage: _duel,
+    said.FilmMessage: _film,
     said.RecordMessage: _record,
     said.BoxMessage: _box,
 }

@@ -8,7 +8,8 @@ import numpy as np
 from eyas.demo.flight import DemoFlight
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.state.terrain import relief_at
-from eyas.engine.targets.catalogue import MODELS
+from eyas.engine.targets.catalogue import MODELS, VEHICLE_KINDS, kind_of
+from eyas.engine.targets.words import phrases
 from eyas.engine.task import reward
 from eyas.engine.task.done import DoneReason
 from eyas.engine.task.ground import ground_corners
@@ -58,11 +59,21 @@ def readings(flight: DemoFlight) -> dict[str, Any]:
         "target": {
             "actor": flight.target,
             "model": MODELS[int(targets.model[0])].name.removesuffix("Simple"),
+            "words": _words(flight),
             "parked": flight.target == flight.world.parked,
             "place": [round(x, 2), round(y, 2), round(float(targets.yaw[0]), 3)],
             "speed": round(float(targets.speed[0]), 2),
         },
     }
+
+
+def _words(flight: DemoFlight) -> str:
+    """Return the target as people call it: "a small green car"."""
+    models, colours = flight.simulation.looks_around(0)
+    model = int(models[0, flight.target])
+    known = phrases(model, colours[0, flight.target].tolist())
+    drives = kind_of(model) in VEHICLE_KINDS  # of others, the first says enough
+    return known[min(drives, len(known) - 1)]
 
 
 def _kinds(share: float, offset: float, depth: float, flight: DemoFlight) -> dict[str, float]:

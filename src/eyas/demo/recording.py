@@ -26,13 +26,18 @@ class DemoRecording:
     Args:
         flight: What is recorded; the recording must end before its world does.
         folder: The folder; it must not exist, or be empty.
+        size: Width and height of its pictures [pixels]; None: those of the settings.
 
     Raises:
         EyasError: It cannot be written.
     """
 
-    def __init__(self, flight: DemoFlight, folder: Path) -> None:
+    def __init__(
+        self, flight: DemoFlight, folder: Path, size: tuple[int, int] | None = None
+    ) -> None:
         config = updated(flight.config, {"video": {"channels": 1}})
+        if size is not None:
+            config = updated(config, {"camera": {"width": size[0], "height": size[1]}})
         config = with_writers(config, quiet=True)
         self.folder, self.frames = folder, 0
         self.period = max(round(PHYSICS_RATE / config.video.fps), 1)

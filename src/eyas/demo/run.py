@@ -7,10 +7,11 @@ import sys
 import time
 import webbrowser
 from collections.abc import Callable, Coroutine
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from eyas.benchmark.policies.shipped import shipped_names
+from eyas.demo.offer import Offer
 from eyas.demo.orders import open_with_a_chase
 from eyas.demo.session import Session
 from eyas.engine.core.errors import OutputError
@@ -55,7 +56,6 @@ async def _ended(serving: Coroutine[Any, Any, None]) -> KeyboardInterrupt | None
 
 
 RECORDINGS = Path("runs/demo")
-BUILT_IN = ("follow", "servo")
 LINES = 10  # Lines per second in a terminal
 
 
@@ -68,8 +68,7 @@ def session_of(config: EyasConfig, policy: str | None = None) -> Session:
     Raises:
         EyasError: The world cannot be built.
     """
-    names = (*BUILT_IN, *shipped_names(), *((policy,) if policy else ()))
-    return Session(config, tuple(dict.fromkeys(names)), RECORDINGS)
+    return Session(config, partial(Offer.of, config, policy), RECORDINGS)
 
 
 def listen(host: str, port: int) -> socket.socket:

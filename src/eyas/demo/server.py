@@ -21,7 +21,7 @@ from websockets.http11 import Request, Response
 
 from eyas.demo import messages as said
 from eyas.demo.frame import DemoFrame
-from eyas.demo.stages import File, Stage
+from eyas.demo.stages import File, Flying, Stage
 from eyas.demo.viewers import Viewer, Viewers
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.faults import FaultLog
@@ -125,6 +125,9 @@ _SAFE = {
 class DemoServer:
     """Serves one stage on a socket of `listen`."""
 
+    _thread: Flying
+    _next: Stage | None
+
     def __init__(self, stage: Stage, host: str, listening: socket.socket) -> None:
         self._stage, self._host, self._listening = stage, host, listening
         self._gate, self._faults = Gate(host), FaultLog()
@@ -136,7 +139,7 @@ class DemoServer:
             begun: Is called with the address, once it answers.
         """
         self.viewers = Viewers(asyncio.get_running_loop())
-        self._thread = self._stage.flying(self.viewers)
+        self._thread, self._next = self._stage.flying(self.viewers), None
         async with serve(
             self._talk,
             sock=self._listening,
@@ -145,13 +148,23 @@ class DemoServer:
             compression=None,  # pictures are compressed already
             close_timeout=1,
         ) as server:
-            flying = asyncio.create_task(asyncio.to_thread(self._thread.run))
             begun(self._address(server))
-            try:
-                await asyncio.shield(flying)
-            finally:
-                self._thread.stop()
-                await flying
+            while True:
+                await self._fly()
+                if (after := self._next or self._stage.after()) is None:
+                    return
+                self._stage, self._next = after, None
+                self._thread = after.flying(self.viewers)
+                self.viewers.tell({"reload": True})
+
+    async def _fly(self) -> None:
+        """Fly until the stage is over or left."""
+        flying = asyncio.create_task(asyncio.to_thread(self._thread.run))
+        try:
+            await asyncio.shield(flying)
+        finally:
+            self._thread.stop()
+            await flying
 
     def _address(self, server: WebSocketServer) -> str:
         port = next(iter(server.sockets)).getsockname()[1]
@@ -203,8 +216,14 @@ class DemoServer:
         async for text in connection:
             with self._faults.guard("message of a page"):
                 try:
-                    self._hear(viewer, said.parsed(text))
-                except ConfigError as error:
+                    message = said.parsed(text)
+                    if isinstance(message, said.StageMessage) and viewer is self.viewers.pilot:
+                        # Reading a protocol and its log takes a while.
+                        self._next = await asyncio.to_thread(self._stage.other, message.protocol)
+                        self._thread.stop()
+                    else:
+                        self._hear(viewer, message)
+                except EyasError as error:
                     errors += 1
                     viewer.tell({"error": str(error)})
             if errors >= ERRORS:

@@ -1,14 +1,18 @@
 """All that is going on in the demo: the flight, who flies, what is shown and recorded."""
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from eyas.demo.choices import Builder, WorldChoice
 from eyas.demo.controllers import Controller, Duel
 from eyas.demo.controls import Held, command_of
+from eyas.demo.film import SIZE as FILM_SIZE
+from eyas.demo.film import Film, FilmLink
 from eyas.demo.flight import DemoFlight
 from eyas.demo.frame import DemoFrame
+from eyas.demo.offer import Offer
 from eyas.demo.readings import readings, traffic
 from eyas.demo.recording import DemoRecording
 from eyas.demo.views import Screen
@@ -96,14 +100,17 @@ TRAFFIC = 3  # Frames from one list of all vehicles to the next
 class Session:
     """State of the demo, in the thread that flies."""
 
-    def __init__(self, config: EyasConfig, policies: tuple[str, ...], recordings: Path) -> None:
-        self.policies, self.recordings = policies, recordings
+    def __init__(self, config: EyasConfig, offer: Callable[[], Offer], recordings: Path) -> None:
+        self.find_offer, self.recordings = offer, recordings
+        self.offer = offer()
         self.size, self.clock = AdaptiveSize(), Clock(time.monotonic())
         self.overlay = True
         self.recording: DemoRecording | None = None
+        self.film: Film | None = None
         self.duel: Duel | None = None
         self.duel_later: str | None = None
         """The policy of a duel that begins when the new world is built."""
+        self.film_later: FilmLink | None = None  # A film that begins then
         self.sides_change = False  # Whether the next flight of the duel is to begin
         plan = WorldChoice(config, config.traffic.max_vehicles)
         self.builder = Builder(plan)
@@ -121,6 +128,7 @@ class Session:
     def hand_over(self, controller: Controller | None, name: str | None) -> None:
         """Let a controller fly; None: the keys."""
         self.controller, self.controller_name, self._left = controller, name, 0
+        self.film = None
 
     def hold(self, held: Held, source: tuple[int, float], now: float) -> None:
         """Hold controls, until something else is said, or nothing for half a second.
@@ -143,7 +151,7 @@ class Session:
             return
         if now - self._heard > SILENCE:
             self._held = {}
-        while steps > 0 and not self.sides_change:
+        while steps > 0 and not self.sides_change and not (self.film and self.film.over):
             steps -= self._advance_some(steps, now)
 
     def _advance_some(self, steps: int, now: float) -> int:
@@ -157,10 +165,14 @@ class Session:
             command, some = self._decided, min(some, self._left)
         if self.recording is not None:
             some = min(some, self.recording.steps_left)
+        if self.film is not None:
+            some = min(some, self.film.steps_left)
         self.flight.fly(command, some, self._held)
         self._left -= some
         if self.recording is not None:
             self.recording.count(command, some)
+        if self.film is not None:
+            self.film.count(some)
         if self.duel is not None:
             self._score(some, now)
         return some
@@ -175,6 +187,9 @@ class Session:
         """Draw the next frame."""
         begun = time.perf_counter()
         self._frames += 1
+        if self.film is not None and self.screen.view == "drone":
+            state = self._state(now, *FILM_SIZE)
+            return DemoFrame(self._frames, state, self.film.picture)
         width, height = self.size.now
         rgb = self.screen.draw(width, height)
         frame = DemoFrame(self._frames, self._state(now, width, height), rgb)
@@ -192,6 +207,7 @@ class Session:
             "speed_of_time": self.clock.speed,
             "flies": self.controller_name,
             "recorded": None if self.recording is None else self.recording.frames,
+            "film": None if self.film is None else self.film.state(),
             "duel": None if self.duel is None else self.duel.state(now),
             "body": self.screen.body(width, height),
             "marks": self.screen.marks(width, height) if self.overlay else None,

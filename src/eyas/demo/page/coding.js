@@ -1,6 +1,8 @@
 // How the pictures are coded: chosen here, or by the server, which knows what the line carries.
 
+import { release } from "./keys.js";
 import { decodesH264 } from "./pictures.js";
+import { t } from "./words.js";
 
 const KEY = "eyas-pictures";
 const ATTEMPTS = 3; // of H.264, when its pictures cannot be decoded
@@ -22,14 +24,14 @@ export class CodingMenu {
       localStorage.setItem(KEY, by("coding").value);
       this.failures = 0;
       this.ask();
-      by("coding").blur();
+      release(by("coding"));
     });
     this.able = decodesH264();
     this.able.then((able) => {
       if (able) return;
       by("coding").value = "jpeg";
       by("coding").disabled = true;
-      by("coding").title = "This browser does not decode H.264 here";
+      by("coding").title = t("This browser does not decode H.264 here");
     });
   }
 
@@ -54,6 +56,6 @@ export class CodingMenu {
     if (this.shown++ % EVERY) return;
     const bytes = this.frames.reduce((sum, [, size]) => sum + size, 0);
     const each = bytes / this.frames.length / 1000;
-    by("line").textContent = `${NAMES[state.picture]}, ${each.toFixed(0)} kB each, ${(bytes / SPAN).toFixed(0)} kB/s`;
+    by("line").textContent = t(`${NAMES[state.picture]}, ${each.toFixed(0)} kB each, ${(bytes / SPAN).toFixed(0)} kB/s`);
   }
 }

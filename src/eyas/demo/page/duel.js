@@ -1,5 +1,7 @@
 // You against a policy: the board over the picture, and the best flights, kept in this browser.
 
+import { t } from "./words.js";
+
 const KEY = "eyas-best-flights-by-terms";
 const MOST = 5;
 const by = (id) => document.getElementById(id);
@@ -16,7 +18,7 @@ export class DuelBoard {
     const left = duel ? Math.ceil(duel.ready) : 0;
     by("countdown").hidden = !left;
     by("countdown").textContent = left;
-    by("duel").textContent = duel && duel.stage !== "over" ? "Give up" : "You against it: 60 s";
+    by("duel").textContent = t(duel && duel.stage !== "over" ? "Give up" : "You against it: 60 s");
     if (!duel) {
       this.stage = null;
       return;
@@ -34,7 +36,9 @@ export class DuelBoard {
     };
     const sides = document.createElement("div");
     sides.className = "sides";
-    sides.append(side("you", you, duel.stage === "you"), side(duel.policy, policy, duel.stage === "policy"));
+    sides.append(side(t("you"), you, duel.stage === "you"), side(duel.policy, policy, duel.stage === "policy"));
+    if (duel.stage === "over" && this.closing) return; // a button that is made anew cannot be pressed
+    this.closing = duel.stage === "over";
     by("duel-board").replaceChildren(this.line(duel), sides);
   }
 
@@ -42,12 +46,15 @@ export class DuelBoard {
     const line = document.createElement("div");
     const { you, policy } = duel.scores;
     if (duel.stage === "over") {
-      by("duel-board").title = "Click to close";
-      line.textContent = you > policy ? "You win!" : you === policy ? "A draw." : `${duel.policy} wins.`;
+      const close = document.createElement("button");
+      close.className = "round";
+      close.textContent = "×";
+      close.ariaLabel = close.title = t("Close");
+      line.append(t(you > policy ? "You win!" : you === policy ? "A draw." : `${duel.policy} wins.`), " ", close);
     } else if (duel.ready > 0) {
-      line.textContent = `${duel.stage === "you" ? "Your turn" : `Now ${duel.policy}`} in ${Math.ceil(duel.ready)} …`;
+      line.textContent = t(`${duel.stage === "you" ? "Your turn" : `Now ${duel.policy}`} in ${Math.ceil(duel.ready)} …`);
     } else {
-      line.textContent = `${duel.left.toFixed(0)} s left: keep the target in the middle`;
+      line.textContent = t(`${duel.left.toFixed(0)} s left: keep the target in the middle`);
     }
     return line;
   }
@@ -73,8 +80,8 @@ export class DuelBoard {
   list(terms) {
     const flights = this.kept()[terms] ?? [];
     const rows = flights.map((flight) => row("td", [flight.day, flight.you, `${flight.name} ${flight.policy}`]));
-    by("best").title = "Flights in this world, with this tracker and this reward";
-    by("best").replaceChildren(...(rows.length ? [row("th", ["Best flights here", "you", "it"]), ...rows] : []));
+    by("best").title = t("Flights in this world, with this tracker and this reward");
+    by("best").replaceChildren(...(rows.length ? [row("th", ["Best flights here", "you", "it"].map((text) => t(text))), ...rows] : []));
   }
 }
 

@@ -93,8 +93,17 @@ export class Keys {
   }
 }
 
-function isField(element) {
-  return element.tagName === "SELECT" || (element.tagName === "INPUT" && element.type !== "range");
+export function isField(element) {
+  return ["SELECT", "INPUT"].includes(element.tagName);
+}
+
+// After a click the keys fly again; who works by the keyboard stays where they are.
+let byKeyboard = false;
+addEventListener("keydown", () => { byKeyboard = true; }, true);
+addEventListener("pointerdown", () => { byKeyboard = false; }, true);
+
+export function release(element) {
+  if (!byKeyboard) element.blur();
 }
 
 function sticks(pad, held) {

@@ -2,16 +2,19 @@
 
 import { CodingMenu } from "./coding.js";
 import { DuelBoard } from "./duel.js";
-import { Keys } from "./keys.js";
+import { FilmCard } from "./film.js";
+import { Keys, isField, release } from "./keys.js";
 import { Link } from "./link.js";
 import { Minimap } from "./minimap.js";
 import { Panel } from "./panel.js";
 import { Settings } from "./settings.js";
 import { Stage } from "./stage.js";
+import { switchLanguage, t, translatePage } from "./words.js";
 
 const by = (id) => document.getElementById(id);
 const SLOW = 0.2;
 const look = { view: "chase", overlay: true };
+const known = {}; // what the server has said last, to be said in another language
 const times = [];
 const latencies = [];
 let last = null;
@@ -25,6 +28,7 @@ const board = new DuelBoard();
 const link = new Link({ frame, text, state: linked, broken: () => coding.broken() });
 const coding = new CodingMenu(link, notice);
 const settings = new Settings(link);
+const film = new FilmCard(link, (changes) => showLook(changes));
 const panel = new Panel(settings);
 new Keys(link);
 
@@ -39,11 +43,13 @@ function frame(state, picture) {
   press("pause", state.speed_of_time === 0);
   press("slow", state.speed_of_time === SLOW);
   press("record", state.recorded !== null);
-  by("record").textContent = state.recorded === null ? "Record" : `● ${state.recorded}`;
-  by("pause").textContent = state.speed_of_time === 0 ? "Go on" : "Pause";
-  press("fly", state.flies !== null && !state.duel);
+  by("record").textContent = state.recorded === null ? t("Record") : `● ${state.recorded}`;
+  by("pause").textContent = t(state.speed_of_time === 0 ? "Go on" : "Pause");
+  press("fly", state.flies !== null && !state.duel && !state.film);
   by("flies").hidden = state.flies === null || Boolean(state.duel);
-  by("flies").textContent = `${state.flies} flies: press a key to take over`;
+  by("flies").textContent = state.film
+    ? t(`A film of ${state.flies}: ${state.film.left.toFixed(0)} s left`)
+    : t(`${state.flies} flies: press a key to take over`);
 }
 
 function measure(state) {
@@ -56,13 +62,15 @@ function measure(state) {
     if (latencies.length > 30) latencies.shift();
   }
   const middle = [...latencies].sort((a, b) => a - b)[latencies.length >> 1];
-  const wait = middle === undefined ? "" : ` · key to picture ${middle.toFixed(0)} ms`;
+  const wait = middle === undefined ? "" : ` · ${t(`key to picture ${middle.toFixed(0)} ms`)}`;
   by("link-line").textContent = `${state.size.join("×")} · ${times.length} fps${wait}`;
-  by("speed-line").textContent = `${state.height.toFixed(0)} m up · ${state.speed.toFixed(0)} m/s`;
+  by("speed-line").textContent = t(`${state.height.toFixed(0)} m up · ${state.speed.toFixed(0)} m/s`);
   window.eyas = { state, world: settings.chosen, latency: middle, frames: times.length }; // for whoever debugs, and tests
 }
 
 function text(told) {
+  if (told.reload) location.reload();
+  Object.assign(known, told.hello && told, told.world && { world: told.world }, told.reward && { reward: told.reward });
   if (told.hello) settings.greet(told);
   if (told.world) {
     settings.world(told.world);
@@ -71,11 +79,15 @@ function text(told) {
   }
   if (told.reward) settings.reward(told.reward);
   if (told.reward && settings.chosen) board.list(settings.terms());
-  if ("pilot" in told) by("watching").hidden = told.pilot;
+  if ("pilot" in told) {
+    by("watching").hidden = told.pilot;
+    document.body.classList.toggle("watches", !told.pilot);
+  }
   if ("pilot" in told && told.pilot) showLook();
   if ("busy" in told) building(told.busy);
-  if (told.say) notice(told.say);
-  if (told.error) notice(told.error, true);
+  if (told.film) film.show(told.film);
+  if (told.say) notice(t(told.say));
+  if (told.error) notice(t(told.error), true);
 }
 
 // Another world is being built; what is seen flies on meanwhile.
@@ -88,8 +100,8 @@ function building(what) {
   const begun = performance.now();
   const show = () => {
     const seconds = Math.floor((performance.now() - begun) / 1000);
-    const why = seconds > 5 ? "; new worlds take up to a minute, known ones seconds" : "";
-    notice(`Building ${what}: ${seconds} s${why}`, false, 10000);
+    const why = seconds > 5 ? t("; new worlds take up to a minute, known ones seconds") : "";
+    notice(t(`Building ${what}: ${seconds} s`) + why, false, 10000);
   };
   show();
   builds = setInterval(show, 1000);
@@ -99,10 +111,11 @@ function linked(open) {
   document.body.classList.toggle("offline", !open);
   clearInterval(builds);
   if (open) notice("");
-  else notice("No connection to eyas demo; trying again …", true, 1e9);
+  else notice(t("No connection to eyas demo; trying again …"), true, 1e9);
   if (open) {
     showLook();
     coding.ask();
+    film.openAddress();
   }
 }
 
@@ -124,7 +137,10 @@ function showLook(changes = {}) {
   const size = stage.fit();
   link.send("look", { ...look, width: Math.min(size.width, 16384), height: Math.min(size.height, 16384) });
   press("overlay", look.overlay);
-  for (const button of by("views").children) button.classList.toggle("on", button.dataset.view === look.view);
+  for (const button of by("views").children) {
+    button.classList.toggle("on", button.dataset.view === look.view);
+    button.setAttribute("aria-pressed", button.dataset.view === look.view);
+  }
 }
 
 function photo() {
@@ -146,17 +162,23 @@ const act = {
   fly: () => link.send("fly", { policy: last?.flies ? null : by("policy").value }),
   duel: () => link.send("duel", { policy: last?.duel && last.duel.stage !== "over" ? null : by("policy").value }),
   take: () => link.send("do", { what: "pilot" }),
+  film: () => link.send("film", { policy: by("policy").value }),
+  "record-for": () => link.send("stage", { protocol: by("protocol").value }),
   "help-open": () => by("help").showModal(),
+  language: () => {
+    switchLanguage();
+    if (known.hello) text({ ...known });
+  },
 };
 for (const [id, does] of Object.entries(act)) {
-  by(id).addEventListener("click", () => { does(); by(id).blur(); });
+  by(id).addEventListener("click", () => { does(); release(by(id)); });
 }
 by("views").addEventListener("click", ({ target }) => {
   if (target.dataset.view) showLook({ view: target.dataset.view });
-  target.blur();
+  release(target);
 });
-by("duel-board").addEventListener("click", () => {
-  if (last?.duel?.stage === "over") link.send("duel", { policy: null });
+by("duel-board").addEventListener("click", ({ target }) => {
+  if (target.tagName === "BUTTON" && last?.duel?.stage === "over") link.send("duel", { policy: null });
 });
 by("picture").addEventListener("click", (event) => {
   if (stage.box) link.send("click", stage.place(event));
@@ -168,8 +190,9 @@ const letters = {
   1: () => showLook({ view: "drone" }), 2: () => showLook({ view: "chase" }), 3: () => showLook({ view: "top" }),
 };
 addEventListener("keydown", (event) => {
-  const typing = event.target.tagName === "SELECT";
+  const typing = isField(event.target) && event.target.type !== "range";
   if (event.repeat || event.ctrlKey || event.metaKey || event.altKey || typing || by("help").open) return;
   letters[event.key.toLowerCase()]?.();
 });
+translatePage();
 new ResizeObserver(() => showLook()).observe(by("picture"));

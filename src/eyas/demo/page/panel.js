@@ -2,6 +2,7 @@
 
 import { rewardColour } from "./stage.js";
 import { KINDS, Plot } from "./plot.js";
+import { named, t } from "./words.js";
 
 const REASONS = {
   height: "too low or too high", distance: "too far from its commands", velocity: "too fast",
@@ -10,7 +11,7 @@ const REASONS = {
   not_a_number: "not a number",
 };
 const NUMBERS = [
-  ["proportion p", (s) => s.p.toFixed(3)],
+  ["how central", (s) => s.p.toFixed(3)],
   ["offset", (s) => `${s.offset.toFixed(1)} m`],
   ["distance", (s) => `${s.distance.toFixed(1)} m`],
   ["height", (s) => `${s.height.toFixed(1)} m`],
@@ -18,9 +19,9 @@ const NUMBERS = [
   ["climb", (s) => `${s.climb.toFixed(1)} m/s`],
   ["yaw rate", (s) => `${s.yaw_rate.toFixed(0)} °/s`],
   ["camera", (s) => `${s.pitch.toFixed(0)}° / ${s.camera_yaw.toFixed(0)}°`],
-  ["target", (s) => s.target.model],
+  ["target", (s) => named(s.target.words)],
+  ["model", (s) => s.target.model],
   ["its speed", (s) => `${s.target.speed.toFixed(1)} m/s`],
-  ["steps", (s) => `${s.steps}`],
   ["time", (s) => `${s.time.toFixed(1)} s`],
 ];
 const EVERY = 3; // frames: numbers that change faster cannot be read
@@ -33,7 +34,9 @@ export class Panel {
     for (const [kind, { title, colour }] of Object.entries(KINDS)) {
       const item = document.createElement("li");
       item.style.setProperty("--colour", colour);
-      item.append(title, document.createElement("b"));
+      const name = document.createElement("span");
+      name.textContent = title;
+      item.append(name, document.createElement("b"));
       document.getElementById("kinds").append(item);
       this.kinds[kind] = item;
     }
@@ -59,12 +62,12 @@ export class Panel {
       item.lastChild.textContent = state.kinds[kind].toFixed(2);
       item.classList.toggle("now", kind === now);
     }
-    for (const { value, text } of this.numbers) value.textContent = text(state);
+    for (const { value, text } of this.numbers) value.title = value.textContent = text(state);
     const reasons = document.getElementById("reasons");
-    reasons.textContent = state.reasons.length ? "A training episode would end: " : "A training episode would go on.";
+    reasons.textContent = t(state.reasons.length ? "A training episode would end: " : "A training episode would go on.");
     if (state.reasons.length) {
       const list = document.createElement("b");
-      list.textContent = state.reasons.map((reason) => REASONS[reason] ?? reason).join(", ");
+      list.textContent = state.reasons.map((reason) => t(REASONS[reason] ?? reason)).join(", ");
       reasons.append(list);
     }
   }

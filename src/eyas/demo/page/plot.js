@@ -1,10 +1,12 @@
 // The rewards of the last seconds.
 
+import { t } from "./words.js";
+
 export const KINDS = {
   view: { title: "view", colour: "#22b8cf" },
   distance: { title: "distance", colour: "#f59f45" },
-  view_discrete: { title: "view 0/1", colour: "#7d8cff" },
-  distance_discrete: { title: "distance 0/1", colour: "#e26bb4" },
+  view_discrete: { title: "view, steps", colour: "#7d8cff" },
+  distance_discrete: { title: "distance, steps", colour: "#e26bb4" },
 };
 const SECONDS = 20;
 
@@ -47,8 +49,8 @@ export class Plot {
       context.stroke();
     }
     const end = this.points.at(-1)?.time ?? 0;
-    context.fillText(`${SECONDS} s ago`, left, height - 2 * scale);
-    context.fillText("now", width - 24 * scale, height - 2 * scale);
+    context.fillText(t(`${SECONDS} s ago`), left, height - 2 * scale);
+    context.fillText(t("now"), width - 24 * scale, height - 2 * scale);
     const order = Object.keys(KINDS).sort((a, b) => (a === now) - (b === now));
     for (const kind of order) {
       context.beginPath();

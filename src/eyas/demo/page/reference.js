@@ -2,6 +2,7 @@
 
 import { Keys } from "./keys.js";
 import { Link } from "./link.js";
+import { t, translatePage } from "./words.js";
 
 const by = (id) => document.getElementById(id);
 const canvas = by("picture");
@@ -28,7 +29,7 @@ function frame(state, picture) {
   by("countdown").hidden = flying;
   by("countdown").textContent = flying ? "" : Math.ceil(state.left);
   by("words").hidden = !state.words;
-  by("words").textContent = state.words ?? "";
+  by("words").textContent = state.words ?? ""; // as policies get them, in no other language
   window.eyas = { state }; // for whoever debugs, and tests
 }
 
@@ -40,19 +41,21 @@ const LINES = {
 
 function text(told) {
   if (told.protocol) {
-    by("title").textContent = `Flights for ‘${told.protocol}’`;
-    by("about").textContent = told.title;
+    by("title").textContent = t(`Flights for ‘${told.protocol}’`);
+    by("about").textContent = t(told.title);
+    by("back").hidden = !told.back;
   }
+  if (told.reload) location.reload();
   if (told.reference) stage(told.reference);
-  if ("pilot" in told && !told.pilot) by("line").textContent = "Another page has the controls.";
-  if (told.error) by("line").textContent = told.error;
+  if ("pilot" in told && !told.pilot) by("line").textContent = t("Another page has the controls.");
+  if (told.error) by("line").textContent = t(told.error);
 }
 
 function stage(at) {
   for (const id of ["leave", "clock", "countdown", "words"]) by(id).hidden = true;
   by("board").hidden = false;
   by("ask").hidden = at.stage !== "ready";
-  by("line").textContent = LINES[at.stage](at);
+  by("line").textContent = t(LINES[at.stage](at));
   if (at.stage === "ready") by("pilot").focus();
 }
 
@@ -60,7 +63,7 @@ function linked(open) {
   if (open) return;
   by("board").hidden = false;
   by("ask").hidden = true;
-  by("line").textContent = "No connection to eyas demo; trying again …";
+  by("line").textContent = t("No connection to eyas demo; trying again …");
 }
 
 by("board").addEventListener("submit", (event) => {
@@ -70,3 +73,5 @@ by("board").addEventListener("submit", (event) => {
   link.send("ready", { pilot: by("pilot").value.trim(), device: by("device").value });
 });
 by("leave").addEventListener("click", () => link.send("leave"));
+by("back").addEventListener("click", () => link.send("stage", { protocol: null }));
+translatePage();

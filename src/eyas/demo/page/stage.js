@@ -1,5 +1,7 @@
 // The picture, and the overlay over it.
 
+import { named } from "./words.js";
+
 export function rewardColour(reward) {
   const stops = [[242, 66, 51], [255, 199, 31], [89, 230, 77]];
   const at = Math.min(Math.max(reward, 0), 1) * 2;
@@ -128,7 +130,7 @@ export class Stage {
     this.stroke("rgb(255 168 196)", 1.2);
     context.font = `600 ${13 * this.scale}px system-ui, sans-serif`;
     context.textBaseline = "middle";
-    const text = `${state.target.model}  ${state.reward.toFixed(2)}`;
+    const text = `${named(state.target.words)}  ${state.reward.toFixed(2)}`;
     context.strokeStyle = "rgb(8 12 18 / .8)";
     context.lineWidth = 3.5 * this.scale;
     context.strokeText(text, x + 12 * this.scale, y - 14 * this.scale);
