@@ -282,7 +282,7 @@ def _what_policy(path: Path) -> str:
         return "a policy of PyTorch"
     if "data.pkl" not in names:
         raise DataFileError(
-            f"{path}: neither a policy of stable-baselines3, which has a policy.pth, nor of PyTorch; "
+            f"{path}: neither a policy of stable-baselines3 (it has no policy.pth) nor of PyTorch; "
             "unpack other archives"
         )
     if b"_modules" not in module:
