@@ -55,7 +55,8 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "targets_page.py docs/images/targets.jpg": ("targets.jpg",),
     "demo_page.py docs/images/demo.jpg": ("demo.jpg",),
 }
-UNDRAWN = {"flown-steps.png", "frames.svg"}  # A plot and a drawing, which no look changes
+UNDRAWN = {"flown-steps.png", "frames.svg", "ride.mp4"}
+"""A plot and a drawing, which no look changes, and a film of files of others (docs/bring.md)."""
 
 
 def looks() -> str:

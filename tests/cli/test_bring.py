@@ -1,6 +1,7 @@
 """`eyas bring`: what files of others are, and the commands that use them."""
 
 import json
+import zipfile
 
 import pytest
 
@@ -77,7 +78,6 @@ def test_a_ride_on_a_large_place_imports_the_part_around_it(tmp_path):
             "a model of language and vision",
             "eyas evaluate --policy",
         ),
-        ("a.zip", "PK", "a policy of stable-baselines3", "eyas evaluate"),
     ],
 )
 def test_each_kind_has_its_command(tmp_path, name, content, what, command):
@@ -85,6 +85,66 @@ def test_each_kind_has_its_command(tmp_path, name, content, what, command):
     assert isinstance(found, Brought), found
     assert found.what.startswith(what)
     assert command in " ".join(found.commands)
+
+
+@pytest.mark.parametrize("ending", ["onnx", "osm", "osm.pbf", "mp4", "pt", "glb", "ulg", "gpx"])
+def test_a_pointer_of_git_lfs_is_called_one(tmp_path, ending):
+    pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:81\nsize 7\n"
+    (found,) = bring([written(tmp_path, f"a.{ending}", pointer)])
+    assert isinstance(found, Refused)
+    assert found.why.endswith(
+        "a pointer of Git LFS in the place of the file; get it with git lfs pull"
+    )
+
+
+def zipped(path, **files):
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in files.items():
+            archive.writestr(name.replace("__", "/").replace("_pkl", ".pkl"), content)
+    return path
+
+
+def test_a_zip_is_what_it_holds(tmp_path):
+    with zipfile.ZipFile(tmp_path / "ppo.zip", "w") as archive:
+        archive.writestr("data", "{}")
+        archive.writestr("policy.pth", "")
+    (tmp_path / "old.pth").write_bytes(b"\x80\x02 only tensors")
+    cases = {
+        tmp_path / "ppo.zip": "a policy of stable-baselines3",
+        zipped(tmp_path / "script.pt", m__constants_pkl="", m__data_pkl=""): "a policy of PyTorch",
+        zipped(tmp_path / "whole.pt", m__data_pkl="_modules"): "a network of PyTorch",
+        zipped(tmp_path / "state.pt", m__data_pkl="OrderedDict"): "weights without their network",
+        tmp_path / "old.pth": "weights without their network",
+        zipped(tmp_path / "pictures.zip", a__b="c"): "neither a policy of stable-baselines3",
+        written(tmp_path, "cut.zip", "PK"): "neither a zip file nor one of PyTorch",
+    }
+    for path, said in cases.items():
+        (found,) = bring([path])
+        assert said in (found.what if isinstance(found, Brought) else found.why), path
+
+
+def test_a_shape_with_too_many_triangles_is_simplified(tmp_path):
+    side = 330
+    rows = [
+        f"v {x * 0.01} {y * 0.01} {(x * y % 7) * 0.01}" for y in range(side) for x in range(side)
+    ]
+    rows += [
+        f"f {k + 1} {k + 2} {k + side + 1}\nf {k + 2} {k + side + 2} {k + side + 1}"
+        for y in range(side - 1)
+        for k in range(y * side, y * side + side - 1)
+    ]
+    (found,) = bring([written(tmp_path, "hill.obj", "\n".join(rows))])
+    assert isinstance(found, Brought), found
+    assert '"most_triangles": 20000' in found.commands[0]
+    assert "of 216482 triangles" in " ".join(found.notes)
+
+
+def test_a_refused_robot_says_why_and_not_what_was_left_out(tmp_path):
+    urdf = """<robot name="a"><link name="b"><visual><geometry><mesh filename="c.stl"/></geometry>
+    </visual></link></robot>"""
+    (found,) = bring([written(tmp_path, "a.urdf", urdf)])
+    assert isinstance(found, Refused)
+    assert "left out, as not read" not in found.why.partition(": ")[2][:22]
 
 
 def test_what_cannot_be_used_says_why_and_the_exit_code_is_1(tmp_path, eyas_command):

@@ -133,7 +133,8 @@ def evaluate(
 ) -> None:
     """Fly a policy in the episodes of a protocol, and measure how well it tracks.
 
-    The exit code is 1 if the policy has failed in all episodes.
+    The exit code is 1 if the policy has failed in all episodes. `eyas evaluate --offline FOLDER`
+    scores a box tracker on real sequences, as `eyas track` does.
     """
     from eyas.benchmark.episodes.episode import seed_sets
     from eyas.benchmark.plan.plan import EvaluationPlan, folder_name

@@ -2,6 +2,7 @@
 
 import json
 import shlex
+import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -9,9 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eyas.engine.core.errors import DataFileError, EyasError
+from eyas.engine.core.files import refuse_pointer
 
 Bounds = tuple[float, float, float, float]  # West, south, east, north [degrees]
 
+_PACE = 9  # Of a car on a track without times [m/s]
+_SIMPLER = 20_000  # Triangles to which larger shapes are simplified
+_PICKLE = 64 << 20  # Largest pickle whose names are searched [bytes]
 _MOST = 200  # Files of a folder that are looked at
 _AROUND = 300.0  # Streets around a ride on a large place [m]
 
@@ -25,6 +30,7 @@ class Brought(NamedTuple):
     commands: tuple[str, ...] = ()  # What uses it
     settings: dict[str, Any] | None = None  # What `--out` writes
     area: Bounds | None = None  # Of a place, and of a track that lies on earth
+    pace: str = ""  # Setting of the speed of a track without times
 
 
 class Refused(NamedTuple):
@@ -94,6 +100,7 @@ def _of_file(path: Path) -> Finding:
     for endings, look in _KINDS:
         if name.endswith(endings):
             try:
+                refuse_pointer(path)
                 return look(path)
             except EyasError as error:
                 return Refused(path, str(error))
@@ -165,9 +172,10 @@ def _track(path: Path) -> Brought:
     points = sum(len(track.place) for track in tracks)
     first = tracks[0]
     notes = []
+    pace = ""
     if first.time is None:
         notes.append("without times: it goes at custom.speed")
-        long = ""
+        long, pace = "", f', "speed": {_PACE}'
     else:
         long = f", {float(first.time[-1] - first.time[0]):.0f} s"
     where = "in metres, as they are"
@@ -183,13 +191,13 @@ def _track(path: Path) -> Brought:
         if not np.isnan(first.place[:, 2]).all():
             notes.append("altitudes are left out: a target stays on the ground")
     what = f"{_many(len(tracks), 'track')}, {_many(points, 'point')}{long}, {where}"
-    custom = f'{{"trajectory": {json.dumps(str(path))}{at}, "body": "passenger"}}'
+    custom = f'{{"trajectory": {json.dumps(str(path))}{at}, "body": "passenger"{pace}}}'
     uses = (
         f"eyas video --set custom={shlex.quote(custom)} --set same_target=true",
         f"eyas video --set video.flight={_quoted(path)} --set video.channels=1"
         + (" --set video.flight_at=[0,0,0]" if at else ""),
     )
-    return Brought(path, what, tuple(notes), uses, area=area)
+    return Brought(path, what, tuple(notes), uses, area=area, pace=pace)
 
 
 def _vehicles(path: Path) -> Brought:
@@ -214,15 +222,29 @@ def _shape(path: Path) -> Brought:
     from eyas.engine.custom.config import CustomConfig
 
     told, usable = check(str(path), CustomConfig(path="-"), "citystreet")
+    more: dict[str, int] = {}
+    if not usable and "most_triangles" in " ".join(told):
+        more = {"most_triangles": _SIMPLER}
+        told, usable = check(str(path), CustomConfig(path="-", **more), "citystreet")
     if not usable:
-        raise DataFileError(told[0].partition(": ")[2])
+        why = next(line for line in told if line.startswith("not usable"))
+        raise DataFileError(f"{path}: {why.partition(': ')[2].removeprefix(f'{path}: ')}")
     notes = tuple(line.partition(": ")[2] for line in told if line.startswith("note"))
-    custom = f'{{"mesh": {json.dumps(str(path))}, "behaviour": "wander"}}'
-    uses = (f"eyas video --set custom={shlex.quote(custom)}", f"eyas targets show {_quoted(path)}")
+    custom = json.dumps({"mesh": str(path), "behaviour": "wander", **more})
+    fewer = f" --most-triangles {_SIMPLER}" if more else ""
+    uses = (
+        f"eyas video --set custom={shlex.quote(custom)}",
+        f"eyas targets show {_quoted(path)}{fewer}",
+    )
     return Brought(path, "a shape for a target", notes, uses)
 
 
 def _network(path: Path) -> Brought:
+    if "nanotrack" in path.name.lower():
+        raise DataFileError(
+            f"{path}: a part of the tracker NanoTrack, which is 'eyas track FOLDER --tracker nano' "
+            f"where EYAS_NANOTRACK={_quoted(path.parent)}"
+        )
     from eyas.benchmark.policies.onnx import load_onnx
 
     policy = load_onnx(path, {}, sampled=False)
@@ -239,7 +261,35 @@ def _network(path: Path) -> Brought:
 def _pickle(path: Path) -> Brought:
     note = "it may hold code, which flying it runs: only from somebody whom you trust"
     command = f"eyas evaluate --policy {_quoted(path)}"
-    return Brought(path, "a policy of stable-baselines3 or PyTorch", (note,), (command,))
+    return Brought(path, _what_policy(path), (note,), (command,))
+
+
+def _what_policy(path: Path) -> str:
+    """Return what a file of PyTorch is, by what is in it; nothing is unpickled."""
+    module, names = path.read_bytes(), {"data.pkl"}  # of old versions of PyTorch
+    if zipfile.is_zipfile(path):
+        with zipfile.ZipFile(path) as archive:
+            inside = {name.rpartition("/")[2]: name for name in archive.namelist()}
+            names = set(inside)
+            pickle = inside.get("data.pkl")
+            small = pickle and archive.getinfo(pickle).file_size < _PICKLE
+            module = archive.read(pickle) if pickle and small else b""
+    elif path.suffix == ".zip" or not module.startswith(b"\x80"):
+        raise DataFileError(f"{path}: neither a zip file nor one of PyTorch")
+    if {"data", "policy.pth"} <= names:
+        return "a policy of stable-baselines3"
+    if names & {"constants.pkl", "archive_format", "archive_version"}:
+        return "a policy of PyTorch"
+    if "data.pkl" not in names:
+        raise DataFileError(
+            f"{path}: neither a policy of stable-baselines3 (it has no policy.pth) nor of PyTorch; "
+            "unpack other archives"
+        )
+    if b"_modules" not in module:
+        raise DataFileError(
+            f"{path}: weights without their network do not fly; export it with torch.onnx.export"
+        )
+    return "a network of PyTorch"
 
 
 def _film(path: Path) -> Brought:
@@ -310,7 +360,7 @@ def _rides(findings: list[Finding]) -> Iterator[Brought]:
             assert place.area is not None
             if one in maps or not _within(one.area, place.area):
                 continue
-            custom = f'{{"trajectory": {json.dumps(str(one.path))}, "body": "passenger"}}'
+            custom = f'{{"trajectory": {json.dumps(str(one.path))}, "body": "passenger"{one.pace}}}'
             large = max(_metres(place.area)) > LARGEST
             part = f" --bbox={_around(one.area)}" if large else ""
             uses = (

@@ -95,6 +95,7 @@ def track(
         str,
         typer.Option(
             "--tracker",
+            "--policy",
             help="csrt, kcf, mosse, medianflow, nano, stay, a detector's .onnx file, or "
             "package.module:Class.",
         ),

@@ -91,7 +91,9 @@ def origin_of(folder: Path) -> Origin:
 
 
 class MapFiles:
-    """Imported maps, by their names or folders, and plans, by the paths of their files."""
+    """Imported maps by names or folders, plans by paths, and maps that ship with traffic that
+    keeps left.
+    """
 
     form = "FILE.plan.json"
 
@@ -116,7 +118,7 @@ class MapFiles:
             there = (folder / MAP_FILE).is_file()
         except (OSError, ValueError):  # a name that no file can have
             return None
-        return _recipe(folder.absolute()) if there else None
+        return _recipe(folder.absolute()) if there else _keeps_left(name)
 
     def _whole(self, folder: Path) -> bool:
         if not (folder / MAP_FILE).is_file():
@@ -126,6 +128,15 @@ class MapFiles:
         except DataFileError as error:
             _LOG.warning("an imported map is left out: %s", error)
             return False
+
+
+def _keeps_left(name: str) -> MapRecipe | None:
+    """Return the generated map of a name with `LEFT_ENDING`: one that ships, with other traffic."""
+    from eyas.engine.state.roads import LEFT_ENDING
+    from eyas.engine.world.maps import MAPS
+
+    kind = name.removesuffix(LEFT_ENDING)
+    return MAPS.get(kind).keeping_left() if kind != name and kind in MAPS.built_in else None
 
 
 def _recipe(folder: Path) -> MapRecipe:
@@ -213,7 +224,7 @@ def _roads_of_plan(path: Path, seed: int) -> "RoadGraph":
     roads = plan.roads
     if roads.file:
         return _roads(path.parent / roads.file, plan.name, seed)
-    return RoadGraph(plan.name, plan.seed, roads.nodes, roads.edges)
+    return RoadGraph(plan.name, plan.seed, roads.nodes, roads.edges, left_hand=roads.left_hand)
 
 
 MAP_FILES = MapFiles()  # The imported maps of the user, and plans in files

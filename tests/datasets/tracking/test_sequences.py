@@ -203,3 +203,20 @@ def test_a_few_of_many_are_chosen_by_name(tmp_path):
         parsed_box("1,2,0,4")
     shutil.rmtree(tmp_path / "s/car1/img")
     assert [each.name for each in sequences_in(tmp_path / "s")] == ["bike1", "car2"]
+
+
+def test_an_offline_evaluation_is_the_same_run(tmp_path, eyas_command):
+    pictures(tmp_path / "s" / "img", 12)
+    (tmp_path / "s" / "groundtruth_rect.txt").write_text("4,4,8,8\n" * 12)
+    words = {
+        "track": ["track", tmp_path / "s", "--tracker", "stay"],
+        "offline": ["evaluate", "--offline", tmp_path / "s", "--policy", "stay"],
+        "equals": ["evaluate", f"--offline={tmp_path / 's'}", "--policy", "stay"],
+    }
+    done = {
+        name: eyas_command(*line, "--workers", "1", "--out", tmp_path / name)
+        for name, line in words.items()
+    }
+    assert all(one.returncode == 0 for one in done.values()), done["offline"].stderr
+    told = {name: one.stdout.replace(str(tmp_path / name), "") for name, one in done.items()}
+    assert told["track"] == told["offline"] == told["equals"]

@@ -108,6 +108,61 @@ def test_a_fisheye_is_one_and_what_is_left_out_is_a_note(tmp_path):
     assert notes == ["pixels are square here: fy 700 counts as fx 500"]
 
 
+VINS = """%YAML:1.0
+---
+model_type: {model}
+image_width: 752
+image_height: 480
+distortion_parameters:
+   k1: -0.28
+   k2: 0.07
+   p1: 0.001
+   p2: -0.002
+projection_parameters:
+   {numbers}
+"""
+SLAM = """Camera.type: "{model}"
+Camera1.fx: 460.0
+Camera1.fy: 460.0
+Camera1.cx: 375.5
+Camera1.cy: 239.5
+Camera1.k1: -0.28
+Camera1.k2: 0.07
+Camera1.p1: 0.001
+Camera1.p2: -0.002
+Camera.width: 752
+Camera.height: 480
+"""
+MATRIX = "fx: 460.0\n   fy: 460.0\n   cx: 375.5\n   cy: 239.5"
+
+
+@pytest.mark.parametrize(
+    "text", [VINS.format(model="PINHOLE", numbers=MATRIX), SLAM.format(model="PinHole")]
+)
+def test_numbers_with_names_of_their_own_are_read(tmp_path, text):
+    path = tmp_path / "camera.yaml"
+    path.write_text(text)
+    settings, _ = read_calibration(path)
+    lens = settings["lens"]
+    assert settings["field_of_view"] == pytest.approx(2.0 * math.atan(376.0 / 460.0), abs=1e-5)
+    assert (lens["right"], lens["below"]) == (0.0, 0.0)
+    assert [lens[key] for key in ("k1", "k2", "p1", "p2")] == [-0.28, 0.07, 0.001, -0.002]
+
+
+def test_a_fisheye_of_vins_counts_from_k2_and_a_mirror_is_refused_by_name(tmp_path):
+    path = tmp_path / "camera.yaml"
+    numbers = "k2: 0.1\n   k3: 0.02\n   k4: -0.003\n   k5: 0.0004\n   " + MATRIX.replace(
+        "fx", "mu").replace("fy", "mv").replace("cx", "u0").replace("cy", "v0")  # fmt: skip
+    text = VINS.format(model="KANNALA_BRANDT", numbers=numbers)
+    path.write_text(text.replace("   k1: -0.28\n   k2: 0.07\n", ""))
+    lens = read_calibration(path)[0]["lens"]
+    assert lens["model"] == "fisheye"
+    assert [lens[f"k{k}"] for k in range(1, 5)] == [0.1, 0.02, -0.003, 0.0004]
+    path.write_text(text.replace("KANNALA_BRANDT", "MEI"))
+    with pytest.raises(DataFileError, match="the camera model MEI"):
+        read_calibration(path)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "line"),
     [

@@ -3,6 +3,7 @@
 import io
 import json
 import math
+import re
 import zipfile
 from functools import partial
 
@@ -183,7 +184,7 @@ def test_a_track_elsewhere_or_on_a_map_that_is_nowhere_is_one_line(tmp_path):
         ("a.gpx", "<kml/>", "its content is <kml>, not <gpx>"),
         ("a.gpx", "<!DOCTYPE x [<!ENTITY a 'b'>]><gpx/>", "DOCTYPE"),
         ("a.gpx", TIMED["a.gpx"].replace("51.5", "151.5"), "latitude 151.5 is nowhere on earth"),
-        ("a.kml", KML.format(f"<gx:Track>{COORD}</gx:Track>"), "0 times for 5 places"),
+        ("a.kml", KML.format(f"<gx:Track><when/>{COORD}</gx:Track>"), "1 times for 5 places"),
         ("a.kmz", b"PK\3\4 broken", "cannot read"),
         ("a.geojson", "[1]", "no LineString"),
         ("a.plan", "{}", "not a plan of QGroundControl"),
@@ -205,3 +206,43 @@ def test_what_is_no_track_is_one_line(tmp_path, name, content, line):
         placed(tmp_path, name, content)
     assert line in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_times_that_are_all_one_say_nothing(tmp_path):
+    text = re.sub(
+        r"<time>[^<]*",
+        "<time>2015-01-01T11:35:02Z",
+        gpx(f"<trk><trkseg>{trackpoints()}</trkseg></trk>"),
+    )
+    path = tmp_path / "a.gpx"
+    path.write_text(text)
+    (track,) = tracks_in(path)
+    assert track.time is None
+    assert len(track.place) > 2
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w []",
+        "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w []",
+        "#time(ns),px,py,pz,qw",
+    ],
+)
+def test_truth_of_euroc_and_tum_vi_is_a_track(tmp_path, head):
+    path = tmp_path / "data.csv"
+    rows = [f"{1403715524907143168 + k * 500_000_000},{k},2.0,1.0,1.0" for k in range(4)]
+    path.write_text("\n".join([head, *rows]))
+    (track,) = tracks_in(path)
+    assert np.allclose(np.diff(track.time), 0.5)
+    assert track.place[:, 0].tolist() == [0.0, 1.0, 2.0, 3.0]
+
+
+def test_a_track_of_a_history_of_places_has_no_times(tmp_path):
+    path = tmp_path / "history.kml"
+    path.write_text(
+        '<kml xmlns:gx="g"><gx:Track xmlns:gx="g"><gx:coord>100.55 13.79 0</gx:coord>'
+        "<gx:coord>100.56 13.80 0</gx:coord></gx:Track></kml>"
+    )
+    (track,) = tracks_in(path)
+    assert track.time is None

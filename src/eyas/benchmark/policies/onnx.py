@@ -37,6 +37,7 @@ from eyas.benchmark.policies.tracker.detector import Detector, Session
 from eyas.benchmark.policies.tracker.metadata import METADATA, TRACKER, metadata
 from eyas.benchmark.policies.tracker.tracker import Tracker
 from eyas.engine.core.errors import ConfigError, DataFileError, MissingExtraError
+from eyas.engine.core.files import refuse_pointer
 from eyas.engine.policies.policy import (
     Decision,
     Policy,
@@ -154,6 +155,7 @@ def open_session(path: Path) -> Any:  # noqa: ANN401  # onnxruntime has no types
         import onnxruntime
     except ImportError as error:
         raise MissingExtraError("a policy in an ONNX file", "policies") from error
+    refuse_pointer(path)
     options = onnxruntime.SessionOptions()
     # One thread: the order of additions, and with it each bit, is then always the same.
     options.intra_op_num_threads = options.inter_op_num_threads = 1

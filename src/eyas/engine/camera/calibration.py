@@ -1,4 +1,5 @@
-"""Calibrations of real cameras as settings: ROS' `camera_info`, OpenCV's and Kalibr's files.
+"""Calibrations of real cameras as settings: ROS' `camera_info`, files of OpenCV, Kalibr, CamOdoCal
+(VINS) and ORB-SLAM.
 
 Read are the size, the camera matrix and the distortion, by the names that these tools give them, in
 YAML or in OpenCV's XML. Coefficients of `plumb_bob`, `radtan` and of OpenCV become the lens
@@ -30,7 +31,7 @@ def read_calibration(path: Path) -> tuple[dict[str, Any], list[str]]:
     Raises:
         DataFileError: It has no camera matrix, or an absurd one; one line.
     """
-    text = read_limited(path, _LARGEST).decode("utf-8-sig", "replace")
+    text = _usual(path, read_limited(path, _LARGEST).decode("utf-8-sig", "replace"))
     size = _size(text)
     matrix = _list(text, ("camera_matrix", "cameraMatrix", "Camera_Matrix", "K", "k"), 9)
     if matrix is None:
@@ -55,6 +56,30 @@ def read_calibration(path: Path) -> tuple[dict[str, Any], list[str]]:
     lens |= _distortion(path, text, notes)
     view = 2.0 * float(exact.atan(0.5 * width / fx))
     return {"width": width, "height": height, "field_of_view": round(view, 6), "lens": lens}, notes
+
+
+def _usual(path: Path, text: str) -> str:
+    """Return a calibration whose numbers have names of their own with those of ROS behind it."""
+    row = rf"^[ \t]*(?:Camera1?\.)?(\w+)[ \t]*:[ \t]*\"?({_NUMBER}|\w+)"
+    cells = dict(re.findall(row, text, re.MULTILINE))
+    model = str(cells.get("model_type") or cells.get("type") or "pinhole").lower()
+    names = ("mu", "mv", "u0", "v0") if model.startswith(_FISHEYES) else ("fx", "fy", "cx", "cy")
+    if model == "mei":
+        raise DataFileError(
+            f"{path}: the camera model MEI (unified, with a mirror) is not read; allowed: pinhole "
+            "with radial and tangential distortion, Kannala-Brandt"
+        )
+    if "camera_matrix" in text or not set(names) <= cells.keys():
+        return text
+    fx, fy, cx, cy = (cells[name] for name in names)
+    first = 2 if "k5" in cells and model.startswith(_FISHEYES) else 1  # CamOdoCal counts from k2
+    fisheye = [f"k{k}" for k in range(first, first + 4)]
+    wanted = fisheye if model.startswith(_FISHEYES) else ["k1", "k2", "p1", "p2", "k3"]
+    return (
+        f"{text}\ncamera_matrix: [{fx}, 0, {cx}, 0, {fy}, {cy}, 0, 0, 1]\n"
+        f"distortion_model: {'fisheye' if wanted is fisheye else 'plumb_bob'}\n"
+        f"distortion_coefficients: [{', '.join(cells.get(name, '0') for name in wanted)}]\n"
+    )
 
 
 def _distortion(path: Path, text: str, notes: list[str]) -> dict[str, Any]:

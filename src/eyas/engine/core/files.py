@@ -104,7 +104,32 @@ def read_limited(
         raise DataFileError(f"{path}: cannot read: {error}") from error
     if len(content) > largest:
         raise DataFileError(f"{path}: cannot read: larger than {largest >> 20} MiB")
+    refuse_pointer(path, content)
     return content
+
+
+def refuse_pointer(path: Path, content: bytes | None = None) -> None:
+    """Refuse what stands for a file where Git LFS has not fetched it.
+
+    Args:
+        content: Of the file, as far as it is known; None: it is read if it can be.
+
+    Raises:
+        DataFileError: It is such a pointer.
+    """
+    if content is None:
+        try:
+            with open(path, "rb", opener=open_at_once) as file:
+                content = file.read(len(_POINTER))
+        except (OSError, ValueError):  # who reads all of it says why
+            return
+    if content.startswith(_POINTER):
+        raise DataFileError(
+            f"{path}: a pointer of Git LFS in the place of the file; get it with git lfs pull"
+        )
+
+
+_POINTER = b"version https://git-lfs.github.com/spec/"
 
 
 def sum_of(path: Path) -> str:

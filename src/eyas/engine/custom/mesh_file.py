@@ -125,7 +125,9 @@ def _from_trimesh(path: Path) -> Triangles:
         missing = getattr(error, "filename", None) or next(iter(error.args), "")
         raise DataFileError(f"{path}: cannot read: it needs {missing!r}; there is none") from None
     except Exception as error:  # its readers raise whatever they stumble on
-        raise DataFileError(f"{path}: cannot read as a mesh: {error}") from None
+        said = str(error) if str(error) and not isinstance(error, NameError) else ""
+        reason = said or "damaged, or without the numbers that it describes"
+        raise DataFileError(f"{path}: cannot read as a mesh: {reason}") from None
     if not parts:
         raise DataFileError(f"{path}: holds no triangles")
     shape = _joined(parts)

@@ -60,7 +60,12 @@ def tracks_in(path: Path) -> list[Track]:
         raise DataFileError(
             f"{path}: {ending} is not read as a track; allowed: {', '.join(endings())}"
         )
-    tracks = [_rising(track) for track in read(path)]
+    tracks = read(path)
+    times = [track.time for track in tracks if track.time is not None]
+    moved = any(np.ptp(track.place[:, :2], axis=0).any() for track in tracks)
+    if times and moved and np.ptp(np.concatenate(times)) == 0.0:  # a program has filled them in
+        tracks = [track._replace(time=None, yaw=None) for track in tracks]
+    tracks = [_rising(track) for track in tracks]
     for track in tracks:
         if not (np.abs(track.place[:, :2]) <= (180.0 if track.on_earth else 1e9)).all():
             raise DataFileError(f"{path}: a place is not finite, or nowhere on earth")

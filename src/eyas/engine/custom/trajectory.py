@@ -206,10 +206,10 @@ def trajectory_of(path: Path, time: Floats, position: Floats, yaw: Floats | None
 
 _SYNONYMS = {
     "t": "t time timestamp stamp sec secs second seconds datetime date_time utc time_utc elapsed",
-    "x": "x east e pos_x position_x px tx x_position xcenter x_center",
-    "y": "y north n pos_y position_y py ty y_position ycenter y_center",
+    "x": "x east e pos_x position_x px tx x_position xcenter x_center p_rs_r_x",
+    "y": "y north n pos_y position_y py ty y_position ycenter y_center p_rs_r_y",
     "id": "id trackid track_id vehicle_id object_id agent_id",
-    "z": "z up alt altitude height ele elevation pos_z position_z pz tz",
+    "z": "z up alt altitude height ele elevation pos_z position_z pz tz p_rs_r_z",
     "yaw": "yaw",
     "latitude": "latitude lat",
     "longitude": "longitude lon lng long",
@@ -223,7 +223,7 @@ _UNITS = {"ns": 1e-9, "us": 1e-6, "µs": 1e-6, "ms": 1e-3, "s": 1.0}
 
 def _column(name: str) -> tuple[str, float]:
     """Return our name of a column, and the factor of a time to seconds."""
-    plain = name.strip().strip("\"'").lower()
+    plain = name.strip().strip("\"'#").strip().lower()  # EuRoC's tables begin with #
     if plain == "frame":
         return "t", _FRAME
     unit = re.search(r"[\[(]\s*([a-zµ]+)\s*[\])]$|_([a-zµ]+)$", plain)

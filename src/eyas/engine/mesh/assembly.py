@@ -1,11 +1,12 @@
 """Meshes made from arrays and from other meshes."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.state.mesh import Material, Mesh
+from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.lanes import exact
 
 
@@ -43,6 +44,26 @@ def concatenate(meshes: Sequence[Mesh]) -> Mesh:
         triangles=_joined(triangles, (0, 3), np.int32),
         materials=_joined(materials, (0,), np.int32),
         palette=tuple(palette),
+    )
+
+
+_OTHER = {
+    Surface.INDICATOR_LEFT: Surface.INDICATOR_RIGHT,
+    Surface.INDICATOR_RIGHT: Surface.INDICATOR_LEFT,
+}
+
+
+def mirrored(mesh: Mesh) -> Mesh:
+    """Return a mesh with y and -y exchanged; its indicators blink on the side where they are."""
+    across = np.array([1.0, -1.0, 1.0], np.float32)
+    return replace(
+        mesh,
+        positions=mesh.positions * across,
+        normals=mesh.normals * across,
+        triangles=np.ascontiguousarray(mesh.triangles[:, ::-1]),
+        palette=tuple(
+            replace(one, surface=_OTHER.get(one.surface, one.surface)) for one in mesh.palette
+        ),
     )
 
 

@@ -13,6 +13,7 @@ from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.doors import first_brought
 from eyas.engine.core.errors import ConfigError
+from eyas.engine.mesh.assembly import mirrored
 from eyas.engine.render.kernels.bundles import Geometry
 from eyas.engine.render.pack.geometry import build_geometry
 from eyas.engine.sensors.obstacles import Solids, solids_of
@@ -135,8 +136,8 @@ def _packed(
     lenses: Lenses,
 ) -> Geometry:
     left_hand = scene.network.left_hand
-    parts, facing = part_library(_chosen(kinds), left_hand=left_hand), -1.0 if left_hand else 1.0
-    return build_geometry(scene, _with_lights(parts, lenses, facing), textures())
+    parts = part_library(_chosen(kinds), left_hand=left_hand)
+    return build_geometry(scene, _with_lights(parts, lenses, left_hand=left_hand), textures())
 
 
 def _chosen(kinds: tuple[int, ...]) -> tuple[TargetKind, ...]:
@@ -148,11 +149,13 @@ def load_parts(kinds: tuple[int, ...]) -> PartLibrary:
     return part_library(_chosen(kinds))
 
 
-def _with_lights(parts: PartLibrary, wanted: Lenses, facing: float) -> PartLibrary:
+def _with_lights(parts: PartLibrary, wanted: Lenses, *, left_hand: bool) -> PartLibrary:
     """Return a library with the lights of signals after its other parts."""
     if wanted is Lenses.NONE:
         return parts
-    lenses = lens_levels(covers=wanted is Lenses.COVERING, facing=facing)
+    lenses = lens_levels(covers=wanted is Lenses.COVERING)
+    if left_hand:
+        lenses = tuple(tuple(map(mirrored, levels)) for levels in lenses)
     lamps = parts.lamps or (False,) * len(parts.parts)
     return PartLibrary((*parts.parts, *lenses), (*lamps, *(False for _ in lenses)))
 

@@ -1,7 +1,7 @@
 """Roads: the graph that a recipe draws, and the network that SUMO's netconvert builds from it."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,26 @@ class RoadGraph:
     edges: tuple[RoadEdge, ...]
     finished: bytes = field(default=b"", repr=False)
     """SUMO's network file, for roads that no recipe has drawn; nodes and edges are empty then."""
+    left_hand: bool = False
+    """Whether traffic keeps left, so that the lanes of an edge are on the left of its line; of
+    finished roads their file says it."""
+
+
+def kept_left(graph: RoadGraph) -> RoadGraph:
+    """Return the drawn roads of a graph with traffic that keeps left.
+
+    Each edge runs the other way: so the asphalt stays where it is, also that of one-way roads,
+    whose line is a kerb, and a ring is driven round clockwise.
+    """
+    edges = []
+    for edge in graph.edges:
+        usual = edge.name == f"{edge.start}-{edge.end}"
+        name = f"{edge.end}-{edge.start}" if usual else edge.name
+        edges.append(
+            replace(edge, name=name, start=edge.end, end=edge.start, shape=edge.shape[::-1])
+        )
+    name = f"{graph.map_name}{LEFT_ENDING}"
+    return replace(graph, map_name=name, edges=tuple(edges), left_hand=True)
 
 
 @dataclass(slots=True)
@@ -90,6 +110,9 @@ class RoadNetwork:
         """Whether traffic keeps left."""
         return self.builder.endswith(LEFT_HAND)
 
+
+LEFT_ENDING = "-left"
+"""End of the name of a generated map on which traffic keeps left."""
 
 LEFT_HAND = ", left-hand"
 """End of `RoadNetwork.builder`: a field of its own would change the files of all networks."""

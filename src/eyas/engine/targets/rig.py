@@ -1,13 +1,13 @@
 """Rigs: the poses of the parts of all actors, kind by kind."""
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.mesh.assembly import mirrored
 from eyas.engine.state.draw import DrawList, PartLibrary
-from eyas.engine.state.mesh import Mesh, Surface
+from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.motion import ActorState
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.targets.catalogue import KINDS, models_of
@@ -101,26 +101,6 @@ def part_library(kinds: tuple[Kind, ...], *, left_hand: bool = False) -> PartLib
         lamps += [kind.lamps and part not in kind.trailers for part in range(rig.part_count)]
         levels = rig.part_levels()
         if left_hand and kind.lamps:
-            levels = [tuple(map(_mirrored, level)) for level in levels]
+            levels = [tuple(map(mirrored, level)) for level in levels]
         parts += levels
     return PartLibrary(tuple(parts), tuple(lamps))
-
-
-_OTHER = {
-    Surface.INDICATOR_LEFT: Surface.INDICATOR_RIGHT,
-    Surface.INDICATOR_RIGHT: Surface.INDICATOR_LEFT,
-}
-
-
-def _mirrored(mesh: Mesh) -> Mesh:
-    """Return a mesh mirrored left to right; its indicators blink on the side where they are."""
-    across = np.array([1.0, -1.0, 1.0], np.float32)
-    return replace(
-        mesh,
-        positions=mesh.positions * across,
-        normals=mesh.normals * across,
-        triangles=np.ascontiguousarray(mesh.triangles[:, ::-1]),
-        palette=tuple(
-            replace(one, surface=_OTHER.get(one.surface, one.surface)) for one in mesh.palette
-        ),
-    )

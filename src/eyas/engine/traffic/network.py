@@ -10,7 +10,7 @@ import numpy as np
 
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.scratch import scratch
-from eyas.engine.state.roads import RoadEdge, RoadGraph, RoadNetwork, RoadNode
+from eyas.engine.state.roads import LEFT_HAND, RoadEdge, RoadGraph, RoadNetwork, RoadNode
 from eyas.engine.traffic.net_file import SumoNet, joined, points_of, road_network
 from eyas.engine.traffic.sumo_install import sumo_binary, sumo_environment, sumo_version
 
@@ -30,6 +30,8 @@ OPTIONS = (
 )
 """netconvert's options, except its files."""
 
+_LEFT_HAND = ("--lefthand", "true")  # The same where traffic keeps left
+
 STRAIGHT_FIRST = "slrtLR"
 """What a light shows is for those who drive on in the first of these directions that there is."""
 
@@ -46,7 +48,8 @@ def graph_hash(graph: RoadGraph) -> str:
     """Return the SHA-256 of netconvert's whole input for a graph, options included."""
     if graph.finished:
         return hashlib.sha256(graph.finished).hexdigest()
-    told = "\n".join([_node_xml(graph.nodes), _edge_xml(graph.edges), *OPTIONS])
+    options = (*OPTIONS, *_LEFT_HAND) if graph.left_hand else OPTIONS
+    told = "\n".join([_node_xml(graph.nodes), _edge_xml(graph.edges), *options])
     return hashlib.sha256(told.encode()).hexdigest()
 
 
@@ -74,7 +77,7 @@ def build_network(graph: RoadGraph) -> RoadNetwork:
     junction_points, junction_first = joined(corners)
     return RoadNetwork(
         graph_hash=graph_hash(graph),
-        builder=f"netconvert {sumo_version()}",
+        builder=f"netconvert {sumo_version()}" + (LEFT_HAND if graph.left_hand else ""),
         lane_points=lane_points,
         lane_first=lane_first,
         lane_width=np.array([lane.width for _, _, lane in lanes]),
@@ -123,6 +126,7 @@ def network_xml(graph: RoadGraph, *, turnarounds: bool = False, signals: bool = 
         banned = OPTIONS.index("--no-turnarounds")
         options = OPTIONS[:banned] + OPTIONS[banned + 2 :] if turnarounds else OPTIONS
         options = (*options, *_SIGNALS) if signals else options
+        options = (*options, *_LEFT_HAND) if graph.left_hand else options
         done = subprocess.run(
             [str(netconvert), *files, *options],
             env=sumo_environment(),

@@ -188,9 +188,10 @@ def _tree_rows(
     trunks, strips = np.zeros((0, 2)), []
     for street in rows:
         kerb = shapely.LineString(street.right)
-        line = shapely.offset_curve(kerb, -_BEYOND_KERB)
+        line = shapely.offset_curve(kerb, -street.side * _BEYOND_KERB)
         found = trees.place_along(line, _TREE_SPACING, rng, keep_free)[: _TREES - len(trunks)]
         if len(found):
             trunks = np.concatenate([trunks, found])
-            strips.append(shapely.buffer(kerb, -_TREE_STRIP, cap_style="flat", single_sided=True))
+            beside = -street.side * _TREE_STRIP
+            strips.append(shapely.buffer(kerb, beside, cap_style="flat", single_sided=True))
     return trunks, strips

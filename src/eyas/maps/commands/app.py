@@ -84,7 +84,6 @@ def import_map(  # noqa: PLR0913  # its options
     overwrite: Overwrite = False,
 ) -> None:
     """Make a map of OpenStreetMap or SUMO; use it with --map NAME, or --map DIR with --out DIR."""
-    from eyas.maps.osm.driving_side import SIDES
     from eyas.maps.osm.importing import run
     from eyas.maps.sumo import importing as sumo
 
@@ -113,8 +112,8 @@ def import_map(  # noqa: PLR0913  # its options
         typer.echo("\n".join(report.lines()))
         return
     bounds = _bounds(bbox)
-    if drive_on not in (None, *SIDES):
-        raise ConfigError(f"--drive-on: {drive_on!r} is not allowed; allowed: left, right")
+    if drive_on is not None:
+        _known_side(drive_on)
     report = run(
         file, name, out=out, bounds=bounds, drive_on=drive_on, record=traffic, overwrite=overwrite
     )
@@ -126,11 +125,13 @@ def import_map(  # noqa: PLR0913  # its options
 def new_map(
     name: Annotated[str, typer.Argument(help="Name of the map whose kind it is.")],
     seed: Annotated[int, typer.Option("--map-seed", min=0, help="Seed of the new map.")],
+    drive_on: Annotated[str, typer.Option("--drive-on", help="left or right.")] = "right",
 ) -> None:
     """Make another map of a kind now, with its traffic, not on first use."""
     from eyas.maps.commands.info import make_another
 
-    for line in make_another(name, seed):
+    _known_side(drive_on)
+    for line in make_another(name, seed, left_hand=drive_on == "left"):
         typer.echo(line)
 
 
@@ -235,6 +236,13 @@ def export_map(
     options = MapExport(name, seed, detail, lamps, cell, weather, hour)
     for line in export(kind, out, options):
         typer.echo(line)
+
+
+def _known_side(text: str) -> None:
+    from eyas.maps.osm.driving_side import SIDES
+
+    if text not in SIDES:
+        raise ConfigError(f"--drive-on: {text!r} is not allowed; allowed: left, right")
 
 
 def _bounds(text: str | None) -> tuple[float, float, float, float] | None:

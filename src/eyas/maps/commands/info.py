@@ -8,9 +8,10 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.engine.behaviours.ground import usable_crossings
+from eyas.engine.core.errors import ConfigError
 from eyas.engine.sim.assets import load_assets
 from eyas.engine.sim.scenes import load_scene
-from eyas.engine.state.roads import RoadNetwork
+from eyas.engine.state.roads import LEFT_ENDING, RoadNetwork
 from eyas.engine.state.scene import ObjectClass, Scene
 from eyas.engine.traffic.config import TrafficConfig
 from eyas.engine.traffic.recording_file import RecordingFile
@@ -211,8 +212,11 @@ def _lengths(network: RoadNetwork) -> NDArray[np.float64]:
     return np.asarray(shapely.length(lines), np.float64)
 
 
-def make_another(name: str, seed: int) -> list[str]:
+def make_another(name: str, seed: int, *, left_hand: bool = False) -> list[str]:
     """Make the map's roads, scene, geometry and traffic, all of which are kept in the cache.
+
+    Args:
+        left_hand: Whether traffic keeps left on it; of a map that ships.
 
     Returns:
         Its figures, and how to use it.
@@ -220,7 +224,11 @@ def make_another(name: str, seed: int) -> list[str]:
     Raises:
         EyasError: There is no such map, or it cannot be made.
     """
-    world = WorldConfig(map=MAPS.get(name).name, seed=seed)
+    if left_hand and name not in MAPS.built_in:
+        known = ", ".join(sorted(MAPS.built_in))
+        raise ConfigError(f"--drive-on: 'left' is not allowed for {name!r}; allowed for: {known}")
+    map_name = MAPS.get(name).name + (LEFT_ENDING if left_hand else "")
+    world = WorldConfig(map=map_name, seed=seed)
     load_assets(world, TrafficConfig(), 1)
-    told = [line for line in describe(name, seed) if not line.startswith("recorded traffic")]
+    told = [line for line in describe(map_name, seed) if not line.startswith("recorded traffic")]
     return [*told, f"use it with --map {world.map} --set world.seed={seed}"]

@@ -33,7 +33,7 @@ def write_plan_of(name: str, seed: int, path: Path) -> list[Path]:
         raise ConfigError(f"--out: {path.name!r} is not allowed: a name that ends in {allowed}")
     recipe, made = MAPS.get(name), [path]
     graph, plan = recipe.roads(seed), recipe.complete_plan(load_network(name, seed), seed)
-    roads = Roads(nodes=graph.nodes, edges=graph.edges)
+    roads = Roads(nodes=graph.nodes, edges=graph.edges, left_hand=graph.left_hand)
     if graph.finished:
         streets = path.with_name(f"{path.name.removesuffix(suffix)}.net.xml.gz")
         write_atomic(streets, gzip.compress(graph.finished, mtime=0))

@@ -280,8 +280,7 @@ def _entrances(
     for street in streets(network):
         end = street.right[-1]
         onwards = unit(end - street.right[-2])
-        leftwards = np.array([-onwards[1], onwards[0]])
-        place = rounded(end - _FROM_END * onwards - _BEYOND * leftwards)
+        place = rounded(end - _FROM_END * onwards - _BEYOND * street.inwards(onwards))
         wide = len(street.dividers) > 0 and meeting[street.end] >= 3
         room = shapely.Point(place).buffer(0.5 * WIDE + 0.4)
         if wide and rng.random() < _ENTRANCES and not shapely.intersects(keep_free, room):

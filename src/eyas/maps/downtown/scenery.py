@@ -53,20 +53,22 @@ def _kerbs(network: RoadNetwork, railway: shapely.Geometry, rng: np.random.Gener
     """Return what stands along the kerbs; no tree stands on the ground of the railway."""
     every = streets(network)
     slim = [s for s in every if _is_along(s, _SLIM_STREET)]
-    # Traffic keeps right, so the kerb of the westbound side is the park's.
-    great = [s for s in every if _is_along(s, _PARK_STREET) and s.start > s.end and s.end < "E"]
+    # Where traffic keeps right, the kerb of the westbound side is the park's.
+    park = [s for s in every if _is_along(s, _PARK_STREET) and min(s.start, s.end) < "E"]
+    great = [s for s in park if (s.start > s.end) != network.left_hand]
     bays: list[shapely.Geometry] = []
     lines: list[shapely.Polygon] = []
     cars: list[list[float]] = []
     for street in every:
         if not street.dividers and street not in slim and street.start[1:] == street.end[1:]:
             for row in _rows(street, rng):
-                bays.append(_beside(row, 0.0, _BAY_DEPTH, 0.0, row.length))
+                side = street.side
+                bays.append(_beside(row, side, _BAY_DEPTH, 0.0, row.length))
                 count = round(row.length / _BAY_LENGTH)
                 for k in range(count + 1):
                     at = float(np.clip(k * _BAY_LENGTH, 0.05, row.length - 0.05))
-                    lines.append(_beside(row, 0.0, _BAY_DEPTH - 0.1, at - 0.05, at + 0.05))
-                cars += _parked(row, count, rng)
+                    lines.append(_beside(row, side, _BAY_DEPTH - 0.1, at - 0.05, at + 0.05))
+                cars += _parked(row, side, count, rng)
     slim_trees = _row_of_trees(slim, _SLIM_SPACING, _SLIM_BEYOND, 13.0)
     return Kerbs(
         bays=snapped(shapely.union_all(bays)),
@@ -94,9 +96,9 @@ def crossing_lamps(network: RoadNetwork, beyond: float) -> list[tuple[Points, fl
     for node in sorted(ways):
         street = max(ways[node], key=lambda s: (len(s.dividers), s.start))
         onwards = unit(street.right[-1] - street.right[-2])
-        leftwards = np.array([-onwards[1], onwards[0]])
-        foot = street.right[-1] - beyond * leftwards + _PAST_LINE * onwards
-        made.append((rounded(foot), float(exact.atan2(leftwards[1], leftwards[0]))))
+        inwards = street.inwards(onwards)
+        foot = street.right[-1] - beyond * inwards + _PAST_LINE * onwards
+        made.append((rounded(foot), float(exact.atan2(inwards[1], inwards[0]))))
     return made
 
 
@@ -118,11 +120,13 @@ def _rows(street: Street, rng: np.random.Generator) -> list[shapely.LineString]:
         at += length + _BETWEEN
 
 
-def _parked(row: shapely.LineString, count: int, rng: np.random.Generator) -> list[list[float]]:
-    """Return the cars in a row of bays, some a little askew."""
+def _parked(
+    row: shapely.LineString, side: float, count: int, rng: np.random.Generator
+) -> list[list[float]]:
+    """Return the cars in a row of bays, which face as the traffic beside them, some askew."""
     start, end = shapely.get_coordinates(row)[[0, -1]]
     along = unit(end - start)
-    across = np.array([along[1], -along[0]])
+    across = side * np.array([along[1], -along[0]])
     heading = float(exact.atan2(along[1], along[0]))
     cars = []
     for k in range(count):
@@ -136,13 +140,13 @@ def _parked(row: shapely.LineString, count: int, rng: np.random.Generator) -> li
 
 
 def _beside(
-    line: shapely.LineString, near: float, far: float, low: float, high: float
+    line: shapely.LineString, side: float, far: float, low: float, high: float
 ) -> shapely.Polygon:
-    """Return a rectangle on the right of a straight kerb [m]."""
+    """Return a rectangle beyond a straight kerb, counter-clockwise [m]."""
     start, end = shapely.get_coordinates(line)[[0, -1]]
     along = unit(end - start)
-    across = np.array([along[1], -along[0]])
-    corners = [(low, near), (low, far), (high, far), (high, near)]
+    across = side * np.array([along[1], -along[0]])
+    corners = [(low, 0.0), (low, far), (high, far), (high, 0.0)][:: int(side)]
     return shapely.Polygon([rounded(start + x * along + y * across) for x, y in corners])
 
 
@@ -157,7 +161,7 @@ def _row_of_trees(rows: list[Street], spacing: float, beyond: float, clear: floa
             piece = substring(kerb, first + k * spacing, first + k * spacing + 0.5)
             start, end = shapely.get_coordinates(piece)[[0, -1]]
             along = unit(end - start)
-            trunks.append(rounded(start + beyond * np.array([along[1], -along[0]]))[None])
+            trunks.append(rounded(start - beyond * street.inwards(along))[None])
     return np.concatenate(trunks)
 
 

@@ -66,14 +66,14 @@ def bales(areas: Sequence[shapely.Polygon], z: float, rng: np.random.Generator) 
 def lamps_of(network: RoadNetwork, seed: int) -> list[Placed]:
     """Return two lamps at each link, their arms over the road."""
     at = {node.name: np.array([node.x, node.y]) for node in road_graph(seed).nodes}
-    places = []
+    places, side = [], -1.0 if network.left_hand else 1.0
     for start, end in zip(network.edge_start, network.edge_end, strict=True):
         along = at[end] - at[start]
         onwards = along / np.abs(along).sum()  # along an axis
-        leftwards = np.array([-onwards[1], onwards[0]])
-        # One for each direction: beyond the middle of the link, on the right.
+        inwards = side * np.array([-onwards[1], onwards[0]])
+        # One for each direction: beyond the middle of the link, at its own kerb.
         middle = at[start] + along / 2 + _LAMPS_APART / 2 * onwards
-        foot = middle - (ROAD_WIDTH / 2 + _FROM_KERB) * leftwards
-        turn = float(exact.atan2(*leftwards[::-1]))
+        foot = middle - (ROAD_WIDTH / 2 + _FROM_KERB) * inwards
+        turn = float(exact.atan2(*inwards[::-1]))
         places.append(Placed.at("street lamp", foot, 0.0, turn))
     return places

@@ -144,12 +144,12 @@ def _houses(
                 shapely.get_coordinates(kerb.interpolate(s))[0] for s in (along, along + 1)
             )
             far = abs(here[0] - here[1] - 330.0) + 300.0 * rng.random() - 0.4 * here[1]
-            sites.append((far, here, unit(there - here)))
+            sites.append((far, here, unit(there - here), street.side))
     made: list[BuildingPart] = []
     shapely.prepare(taken)
     shapes: list[shapely.Polygon] = []
-    for _, here, onwards in sorted(sites, key=lambda site: float(site[0])):
-        outline = _footprint(here, onwards, rng)
+    for _, here, onwards, side in sorted(sites, key=lambda site: float(site[0])):
+        outline = _footprint(here, onwards, side, rng)
         shape = shapely.Polygon(outline)
         free = not taken.intersects(shape) and all(shape.distance(other) > 7.0 for other in shapes)
         if free and len(made) < _HOUSES:
@@ -158,15 +158,13 @@ def _houses(
     return made
 
 
-def _footprint(here: Points, onwards: Points, rng: np.random.Generator) -> Points:
-    """Return the corners of a house on the right of a road, counter-clockwise [m]."""
+def _footprint(here: Points, onwards: Points, side: float, rng: np.random.Generator) -> Points:
+    """Return the corners of a house beyond a kerb, counter-clockwise [m]."""
     wide, deep = rng.uniform(11.0, 24.0), rng.uniform(10.0, 16.0)
-    right = np.array([onwards[1], -onwards[0]])
-    front = here + rng.uniform(4.5, 9.0) * right
-    half = wide / 2 * onwards
-    return rounded(
-        [front - half, front - half + deep * right, front + half + deep * right, front + half]
-    )
+    outwards = side * np.array([onwards[1], -onwards[0]])
+    front = here + rng.uniform(4.5, 9.0) * outwards
+    half, back = side * wide / 2 * onwards, deep * outwards
+    return rounded([front - half, front - half + back, front + half + back, front + half])
 
 
 def _house(outline: Points, rng: np.random.Generator) -> BuildingPart:

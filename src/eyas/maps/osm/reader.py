@@ -11,6 +11,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from eyas.engine.core.errors import ConfigError, DataFileError, MissingExtraError
+from eyas.engine.core.files import refuse_pointer
 
 Tags = dict[str, str]
 Bounds = tuple[float, float, float, float]  # West, south, east and north, in degrees
@@ -123,6 +124,7 @@ def read_osm(path: Path) -> OsmData:
             f"{path}: larger than {_LARGEST >> 20} MiB; cut a part out of it first, for example "
             "with `osmium extract --bbox WEST,SOUTH,EAST,NORTH`"
         )
+    refuse_pointer(path, start)
     if b"OSMHeader" in start:
         from eyas.maps.osm.reader import read_pbf  # pyosmium, which is optional
 

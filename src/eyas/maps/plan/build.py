@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from eyas.engine.mesh.assembly import concatenate
+from eyas.engine.mesh.assembly import concatenate, mirrored
 from eyas.engine.mesh.flat import flat_polygons, quads
 from eyas.engine.mesh.solids import box
 from eyas.engine.state.mesh import Material, Mesh, Surface
@@ -17,7 +17,7 @@ from eyas.engine.state.scene import Footways, Lamps, ObjectClass, Scene
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.world.build.materials import TEXTURES
 from eyas.engine.world.build.placed import Placed
-from eyas.engine.world.build.scene_builder import Prototype, SceneBuilder
+from eyas.engine.world.build.scene_builder import Levels, Prototype, SceneBuilder
 from eyas.engine.world.roads.areas import kerbstones, polygons_of, skirt, surface
 from eyas.engine.world.weather import Season
 from eyas.lanes import exact
@@ -100,6 +100,8 @@ class _Work:
         if rng is None:
             rng = p.Chance(stream=f"kind {kind.name}").generator(self.plan.seed)
         make = partial(thing.levels, kind, rng, self.season)
+        if thing.handed and self.network.left_hand:
+            make = partial(_mirrored, make)
         return self.builder.prototype(kind.name, make, trees=thing.trees)
 
     def light(self, pose: Placed, reach: float, height: float) -> None:
@@ -125,6 +127,10 @@ class _Work:
         scene = self.builder.build(self.network, lamps, self.plan.horizon)
         scene.footways = _footways(self.plan, self.network)
         return scene
+
+
+def _mirrored(make: Callable[[], Levels]) -> Levels:
+    return tuple(map(mirrored, make()))
 
 
 def _footways(plan: p.MapPlan, network: RoadNetwork) -> Footways:

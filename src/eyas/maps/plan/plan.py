@@ -514,6 +514,9 @@ class Roads:
     file: str = ""
     """A network file of SUMO beside the plan (`.net.xml`, `.net.xml.gz`), in place of nodes and
     edges."""
+    left_hand: bool = False
+    """Whether traffic keeps left; the lanes of an edge are then on the left of its line. A file
+    says it itself."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

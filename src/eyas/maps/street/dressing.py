@@ -125,9 +125,9 @@ def along_kerbs(
                 pair = (kerb.interpolate(s) for s in (along, along + 0.1))
                 here, there = (shapely.get_coordinates(point)[0] for point in pair)
                 onwards = unit(there - here)
-                leftwards = np.array([-onwards[1], onwards[0]])
-                place = here - rule.beyond * leftwards
-                made += _row(rule, place, leftwards, ground, standing, rng)
+                inwards = street.inwards(onwards)
+                place = here - rule.beyond * inwards
+                made += _row(rule, place, inwards, ground, standing, rng)
     return made
 
 

@@ -82,9 +82,9 @@ def _candidates(network: RoadNetwork) -> tuple[NDArray[np.float64], NDArray[np.f
         here = shapely.get_coordinates(shapely.line_interpolate_point(kerb, along))
         there = shapely.get_coordinates(shapely.line_interpolate_point(kerb, along + 0.1))
         onwards = (there - here) / 0.1
-        leftwards = np.stack([-onwards[:, 1], onwards[:, 0]], axis=1)
-        feet.append(here - BEYOND_KERB * leftwards)
-        turns.append(exact.atan2(leftwards[:, 1], leftwards[:, 0]))
+        inwards = street.inwards(onwards.T).T
+        feet.append(here - BEYOND_KERB * inwards)
+        turns.append(exact.atan2(inwards[:, 1], inwards[:, 0]))
     return np.concatenate(feet), np.concatenate(turns)
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,6 +41,7 @@ class Thing:
     kind: ObjectClass  # Its class: what a detector would name it, if it has such a name
     solid: str = "nothing"  # What of it is solid, a row of `SOLIDS`
     trees: int = 0  # Number of trees in it; shrubs do not count
+    handed: bool = False  # Whether y and -y of it are exchanged where traffic keeps left
     light: tuple[float, float] | None = None
     """Distance along its arm and height of its light [m]; None: it gives none."""
 
@@ -179,15 +181,15 @@ THINGS: Mapping[str, Thing] = {
         levels=lambda kind, rng, season: jetties.boat_levels(kind.variant), kind=ObjectClass.BOAT
     ),
     "house": Thing(levels=_house, kind=ObjectClass.BUILDING, solid="cottage"),
-    "traffic light": Thing(levels=_always(signals.signal_levels), kind=_POLE, solid="signal"),
-    "dark traffic light": Thing(
-        # The second variant is for where traffic keeps left.
-        levels=lambda kind, rng, season: signals.signal_levels(
-            amber=False, facing=-1.0 if kind.variant else 1.0
-        ),
-        kind=_POLE,
-        solid="signal",
-    ),
+    **{
+        name: Thing(
+            levels=_always(partial(signals.signal_levels, amber=name == "traffic light")),
+            kind=_POLE,
+            solid="signal",
+            handed=True,
+        )
+        for name in ("traffic light", "dark traffic light")
+    },
     "street lamp": Thing(levels=_always(lamps.lamp_levels), kind=_POLE, solid="lamp", light=_LIGHT),
     **{
         name: Thing(levels=_always(make), kind=_STRUCTURE)
@@ -203,6 +205,7 @@ THINGS: Mapping[str, Thing] = {
         levels=lambda kind, rng, season: gantries.gantry_levels(kind.variant),
         kind=_POLE,
         solid="gantry",
+        handed=True,
     ),
     "parked car": Thing(
         levels=lambda kind, rng, season: parked_cars.parked_car(kind.variant),

@@ -146,9 +146,7 @@ def completed(
         *(ThingKind(name=name, make="street tree", variant=k, chance="town trees")
           for k, name in enumerate(_TREES)),
         *plant_kinds("town gardens"), *STREET_KINDS[1:], *FURNITURE_KINDS, *CAR_KINDS,
-        ThingKind(
-            name="traffic light", make="dark traffic light", variant=int(network.left_hand)
-        ),
+        ThingKind(name="traffic light", make="dark traffic light"),
     )  # fmt: skip
     given = {kind.name for kind in plan.library}
     walks = town.crosswalks

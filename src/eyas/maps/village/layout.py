@@ -127,11 +127,11 @@ def _sites(ways: Sequence[Street], rng: np.random.Generator) -> list[Cottage]:
                 shapely.get_coordinates(kerb.interpolate(s))[0] for s in (along, along + 0.5)
             )
             onwards = unit(there - here)
-            right = np.array([onwards[1], -onwards[0]])
+            inwards = way.inwards(onwards)
             setback = rng.uniform(*_SETBACKS) + SIDE / 2
-            place = rounded(here + setback * right)
+            place = rounded(here - setback * inwards)
             # The front, at y, faces the road.
-            turn = exact.atan2(-right[1], -right[0]) - math.pi / 2 + rng.uniform(-0.07, 0.07)
+            turn = exact.atan2(inwards[1], inwards[0]) - math.pi / 2 + rng.uniform(-0.07, 0.07)
             storeys = int(rng.choice((2, 3, 4), p=(0.15, 0.7, 0.15)))
             made.append(Cottage(place, round(turn, 4), storeys, int(rng.integers(3))))
     return made
@@ -253,7 +253,8 @@ def _tree_rows(
         street = both[int(index)]
         sides = [w for w in ways if {w.start, w.end} == {street.start, street.end}]
         for side in sides:
-            line = shapely.offset_curve(shapely.LineString(side.right), -_BEYOND_KERB)
+            kerb = shapely.LineString(side.right)
+            line = shapely.offset_curve(kerb, -side.side * _BEYOND_KERB)
             found = trees.place_along(line, _TREE_SPACING, rng, keep_free)
             trunks = np.concatenate([trunks, found[: _TREES - len(trunks)]])
     return trunks

@@ -50,6 +50,8 @@ def read_kml(path: Path) -> list[Track]:
     for each in _all(root, "Track"):
         when = [(one.text or "").strip() for one in _all(each, "when")]
         places = [(one.text or "").split() for one in _all(each, "coord")]
+        if not when:  # Google's history of places has a span of time instead
+            when = [""] * len(places)
         if len(when) != len(places):
             raise DataFileError(f"{path}: {len(when)} times for {len(places)} places in a Track")
         points = (_point([*place, *["nan"] * (3 - len(place))], time)

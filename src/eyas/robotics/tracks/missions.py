@@ -73,5 +73,5 @@ def _way(path: Path, places: list[list[Any]]) -> list[Track]:
     except (TypeError, ValueError):
         raise DataFileError(f"{path}: a waypoint's place is no number") from None
     if len(table) < 2:
-        raise DataFileError(f"{path}: {len(table)} waypoints; a way has two or more")
+        raise DataFileError(f"{path}: {len(table)} waypoints with a place; a way has two or more")
     return [Track(None, table, on_earth=True)]

@@ -2,7 +2,8 @@
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from hashlib import blake2b
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -114,6 +115,8 @@ class MapRecipe:
     """Folder of an imported map, which is not a package. It holds the same files."""
     checksums: Mapping[str, str] = field(default_factory=dict)
     """SHA-256 of files in it, by name."""
+    left_hand: bool = False
+    """Whether traffic keeps left, so that nothing of what the package ships is of it."""
     file: Path | None = None
     """File with the plan of a map that has neither."""
     notice: str = ""
@@ -169,15 +172,27 @@ class MapRecipe:
 
     def shipped(self, file: str) -> Traversable | None:
         """Return a file that comes with the map's package; None if there is none."""
-        path = self.folder / file if self.folder is not None else None
+        path = self.folder / file if self.folder is not None and not self.left_hand else None
         return path if path is not None and path.is_file() else None
 
     def shipped_traffic(self) -> tuple[Traversable, ...]:
         """Return the recordings that come with the map's package, the canonical ones first."""
-        files = () if self.folder is None else self.folder.iterdir()
+        files = () if self.folder is None or self.left_hand else self.folder.iterdir()
         found = [file for file in files if re.fullmatch(r"traffic.*\.npz", file.name)]
         usual = {TRAFFIC_FILE, SIGNALS_TRAFFIC_FILE}
         return tuple(sorted(found, key=lambda file: (file.name not in usual, file.name)))
+
+    def keeping_left(self) -> "MapRecipe":
+        """Return the map with traffic that keeps left."""
+        from eyas.engine.state.roads import LEFT_ENDING
+
+        return replace(
+            self,
+            name=f"{self.name}{LEFT_ENDING}",
+            title=f"{self.title}, traffic keeps left",
+            roads=partial(_kept_left, self.roads),
+            left_hand=True,
+        )
 
     def data_hash(self) -> str | None:
         """Return a digest of a plan in a file, or of what a folder holds beside code of Eyas, roads
@@ -246,6 +261,12 @@ class MapRecipe:
         if weather.name in self.without:
             raise UnknownNameError("world.weather", name, self.weathers, here)
         return weather
+
+
+def _kept_left(roads: Callable[[int], "RoadGraph"], seed: int) -> "RoadGraph":
+    from eyas.engine.state.roads import kept_left
+
+    return kept_left(roads(seed))
 
 
 def _files_in(folder: Traversable, *, sources: bool) -> Iterator[Traversable]:

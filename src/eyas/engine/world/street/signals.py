@@ -84,21 +84,20 @@ def signals_along(network: RoadNetwork) -> list[Placed]:
     return [Placed.at("traffic light", at, 0.0, turn) for at, turn in signal_places(network)]
 
 
-def signal_levels(*, amber: bool = True, facing: float = 1.0) -> tuple[Mesh, ...]:
+def signal_levels(*, amber: bool = True) -> tuple[Mesh, ...]:
     """Return a traffic light, the finest level of detail first.
 
-    The foot is at the origin, the arm along x; the lights face along y, or against it where traffic
-    keeps left (`facing` of -1).
+    The foot is at the origin, the arm along x; the lights face along y, and mirrored against it
+    where traffic keeps left.
     """
     lenses = (_DARK[_RED], _SHINING[_AMBER] if amber else _DARK[_AMBER], _DARK[_GREEN])
-    heads = [_head(centre, lenses, facing) for centre in _CENTRES]
+    heads = [_head(centre, lenses) for centre in _CENTRES]
     return concatenate([_steel(8), *heads]), concatenate([_steel(3), *heads[:-1]])
 
 
 def lens_levels(
     *,
     covers: bool = False,  # Whether they hide amber that shines there and should not
-    facing: float = 1.0,  # See `signal_levels`
 ) -> tuple[tuple[Mesh, ...], ...]:
     """Return the lenses that shine, over those of `signal_levels`, for each aspect."""
     levels = []
@@ -107,8 +106,7 @@ def lens_levels(
         if covers:
             stuffs.setdefault(_AMBER, _DARK[_AMBER])
         heads = [
-            concatenate([_lens(centre, *one, facing) for one in stuffs.items()])
-            for centre in _CENTRES
+            concatenate([_lens(centre, *one) for one in stuffs.items()]) for centre in _CENTRES
         ]
         levels.append((concatenate(heads), concatenate(heads[:-1])))
     return tuple(levels)
@@ -126,15 +124,15 @@ def _steel(sides: int) -> Mesh:
     )
 
 
-def _head(centre: tuple[float, float, float], lenses: tuple[Material, ...], facing: float) -> Mesh:
+def _head(centre: tuple[float, float, float], lenses: tuple[Material, ...]) -> Mesh:
     x, y, z = centre
-    parts = [box((0.36, 0.22, 1.05), (x, facing * y, z), _CASE, 1.0)]
+    parts = [box((0.36, 0.22, 1.05), (x, y, z), _CASE, 1.0)]
     for lens, rise in zip(lenses, _RISES, strict=True):
-        parts.append(box((0.24, 0.04, 0.24), (x, facing * (y + 0.12), z + rise), lens, 1.0))
+        parts.append(box((0.24, 0.04, 0.24), (x, y + 0.12, z + rise), lens, 1.0))
     return concatenate(parts)
 
 
-def _lens(centre: tuple[float, float, float], lens: int, stuff: Material, facing: float) -> Mesh:
+def _lens(centre: tuple[float, float, float], lens: int, stuff: Material) -> Mesh:
     """Return a lens over another, which bulges so that it is seen from above, too."""
     x, y, z = centre
-    return box((0.27, 0.16, 0.27), (x, facing * (y + 0.19), z + _RISES[lens]), stuff, 1.0)
+    return box((0.27, 0.16, 0.27), (x, y + 0.19, z + _RISES[lens]), stuff, 1.0)
