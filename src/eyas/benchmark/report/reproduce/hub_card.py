@@ -115,6 +115,6 @@ def _own_card(network: Path, beside: tuple[str, ...]) -> str:
     return (
         f"{_front_matter()}\n# `{network.stem}`\n\n"
         "A network that follows a target with a drone, trained with Eyas, a simulator and "
-        "benchmark for drone visual active tracking. It has seen drawn pictures only, and must not steer a "
-        f"real drone untried.\n\n{listed}"
+        "benchmark for drone visual active tracking. It has seen drawn pictures only, and must "
+        f"not steer a real drone untried.\n\n{listed}"
     )
