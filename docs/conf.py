@@ -84,7 +84,7 @@ def complete(app: Sphinx, page: str, source: list[str]) -> None:
         if marker in text:
             text = text.replace(marker, made())
     if page in BELOW:
-        below = BELOW[page].rpartition("/")[2] if "/" in page else BELOW[page]
+        below = BELOW[page].removeprefix(f"{page.rpartition('/')[0]}/")
         text += f"\n\n```{{toctree}}\n:hidden:\n:glob:\n\n{below}\n```\n"
     source[0] = text
 
