@@ -5,9 +5,11 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 
 ROOT = Path(__file__).parents[1]
 TEXTS = ("CHANGELOG.md", "CITATION.cff", "README.md", ".github/ISSUE_TEMPLATE/config.yml")
@@ -104,3 +106,11 @@ def test_the_page_on_pypi_is_read_as_it_is_rendered():
     assert found(f"[more]({ours}/blob/main/docs/lost.md)") == ["docs/lost.md: no such file"]
     assert found(f"[more]({ours}/blob/main/README.md#end)") == ["README.md: no heading #end"]
     assert found("[more](javascript:on)") == ["1 links are written, 0 shown"]
+
+
+def test_the_recipe_of_conda_asks_for_what_the_package_does():
+    recipe = yaml.safe_load((ROOT / "conda/recipe.yaml").read_text())
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    wanted = {text.replace(">=", " >=") for text in project["dependencies"]}
+    wanted |= {f"python {project['requires-python']}", "__linux"}
+    assert set(recipe["requirements"]["run"]) == wanted
