@@ -32,6 +32,7 @@ nitpicky = False
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
+maximum_signature_line_length = 100  # else a line for each parameter
 autodoc_mock_imports = ["torch", "stable_baselines3", "pettingzoo"]  # extras, slow to import
 autodoc_default_options = {"members": True}
 napoleon_numpy_docstring = False
@@ -48,7 +49,10 @@ html_theme_options = {
 }
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
-html_extra_path = ["films"]
+html_extra_path = ["films", "settings.schema.json", "labels.schema.json"]
+linkcheck_ignore = [r"https://github\.com/OWNER/"]
+linkcheck_anchors_ignore_for_url = [r"https://github\.com/"]  # made by their scripts
+linkcheck_timeout = 30
 html_show_sphinx = False
 copybutton_prompt_text = "$ "
 html_show_sourcelink = False
@@ -61,6 +65,7 @@ BELOW = {
     "decisions/README": "decisions/*",
     "lab/README": "lab/*",
     "policies/README": "policies/*",
+    "reference/api": "reference/api/*",
 }
 """Pages with pages of their own below them in the navigation."""
 OUTSIDE = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
@@ -79,7 +84,7 @@ def complete(app: Sphinx, page: str, source: list[str]) -> None:
         if marker in text:
             text = text.replace(marker, made())
     if page in BELOW:
-        below = BELOW[page].rpartition("/")[2] if "/" in page else BELOW[page]
+        below = BELOW[page].removeprefix(f"{page.rpartition('/')[0]}/")
         text += f"\n\n```{{toctree}}\n:hidden:\n:glob:\n\n{below}\n```\n"
     source[0] = text
 
@@ -108,14 +113,23 @@ def give_back(
         lines[:] = KEPT.pop(name, lines)
 
 
+def for_agents(app: Sphinx, failure: Exception | None) -> None:
+    """Write the list of pages for programs that read it, with links to the site's own pages."""
+    if failure is None and app.builder.format == "html":
+        text = (HERE / "llms.txt").read_text(encoding="utf-8")
+        (Path(app.outdir) / "llms.txt").write_text(text.replace(".md)", ".html)"), encoding="utf-8")
+
+
 def outdated(app: Sphinx, env: object, *sets: set[str]) -> list[str]:
     """Return the pages that are made from the code, which may have changed though they have not."""
-    return ["reference/api", "reference/commands", "speed"]
+    groups = [f"reference/{name}" for name in site_reference.MADE if name.startswith("api/")]
+    return ["reference/api", *groups, "reference/commands", "speed"]
 
 
 def setup(app: Sphinx) -> None:
     """Connect the above to Sphinx."""
     app.connect("source-read", complete)
+    app.connect("build-finished", for_agents)
     app.connect("env-get-outdated", outdated)
     app.connect("autodoc-process-docstring", keep, priority=400)  # napoleon has 500
     app.connect("autodoc-process-docstring", give_back, priority=600)

@@ -2,13 +2,17 @@
 
     python tools/release.py                 # all checks, then the packages; hours
     python tools/release.py --packages      # the packages alone: minutes
+    python tools/release.py --tag 1.0.0     # the release: dates the texts, commits, checks, tags
+    python tools/release.py --notes         # prints what the changelog says of this version
 
-It needs the extras `dev`, `docs` and `release`. The packages, and a list of their parts (an SBOM in
-the form of CycloneDX), are written to `dist`. It publishes nothing: the last lines say which tag to
-push, after which `.github/workflows/release.yml` does.
+It needs the extras `dev`, `docs` and `release`. The packages, a list of their parts (an SBOM in the
+form of CycloneDX) and the page as PyPI shows it are written to `dist`. It publishes nothing: the
+last line says what to push, after which `.github/workflows/release.yml` does. `--account` fills in
+the account on GitHub, once, before the first release.
 """
 
 import argparse
+import datetime
 import os
 import re
 import subprocess
@@ -17,12 +21,15 @@ import tempfile
 import venv
 from pathlib import Path
 
+import pypi_page
 from version import REPOSITORY, version
 
 ROOT = Path(__file__).resolve().parents[1]
 DIST = ROOT / "dist"
 LARGEST_WHEEL = 32.5e6
 """Largest size of the wheel [bytes]; `tests/test_wheel.py` checks it too."""
+LARGEST_SDIST = 48e6
+"""Largest size of the sdist [bytes]; PyPI takes files of up to 100 MB."""
 FIRST = ("video", "--set", "video.channels=1", "--set", "video.total_time=1", "--out", "first")
 """The README's first command, shortened."""
 CHECKS: tuple[tuple[str, ...], ...] = (
@@ -78,6 +85,49 @@ def texts_of(release: str) -> list[str]:
     return missing
 
 
+def notes(release: str) -> str:
+    """Return what the changelog says of a version, without its heading.
+
+    Raises:
+        SystemExit: It says nothing.
+    """
+    log = (ROOT / "CHANGELOG.md").read_text()
+    found = re.search(
+        rf"^## {re.escape(release)} [^\n]*\n(.*?)(?=^## |\Z)", log, re.MULTILINE | re.DOTALL
+    )
+    if not found or not found[1].strip():
+        raise SystemExit(f"CHANGELOG.md: has no section of {release}")
+    return found[1].strip()
+
+
+def dated(release: str, day: str, account: str | None) -> None:
+    """Write a version and its day into the texts that name it, and commit them.
+
+    Args:
+        account: The account on GitHub, where the texts still have `OWNER`.
+
+    Raises:
+        SystemExit: The changelog has no section that becomes this version's.
+    """
+    own = r"^## (Unreleased|[\d.]+ \(in development\))$"
+    _replace("CHANGELOG.md", own, f"## {release} - {day}")
+    _replace("CITATION.cff", r"^version: .*(\ndate-released: .*)?$", f"version: {release}")
+    _replace("CITATION.cff", r"^(version: .*)$", rf'\1\ndate-released: "{day}"')
+    _replace("tools/version.py", r"^NEXT = .*$", f'NEXT = "{release}"')
+    if account is not None:
+        for path in run("git", "grep", "-l", "github.com/OWNER/eyas").split():
+            _replace(path, r"github\.com/OWNER/eyas", f"github.com/{account}/eyas")
+    run("git", "commit", "-qam", f"Eyas {release}")
+
+
+def _replace(path: str, pattern: str, text: str) -> None:
+    old = (ROOT / path).read_text(encoding="utf-8")
+    new, count = re.subn(pattern, text, old, flags=re.MULTILINE)
+    if not count:
+        raise SystemExit(f"{path}: has no line like {pattern}")
+    (ROOT / path).write_text(new, encoding="utf-8")
+
+
 def build() -> list[Path]:
     """Build the sdist, and the wheel from the sdist; return both.
 
@@ -91,8 +141,11 @@ def build() -> list[Path]:
     packages = sorted(DIST.glob("eyas-*"), reverse=True)  # the wheel is last
     run("python", "-m", "twine", "check", "--strict", *packages)
     (wheel,) = DIST.glob("*.whl")
-    if wheel.stat().st_size > LARGEST_WHEEL:
-        raise SystemExit(f"{wheel}: {wheel.stat().st_size / 1e6:.1f} MB, more than allowed")
+    for package in packages:
+        size, limit = package.stat().st_size, LARGEST_WHEEL if package == wheel else LARGEST_SDIST
+        if size > limit:
+            raise SystemExit(f"{package}: {size / 1e6:.1f} MB; allowed: {limit / 1e6:.1f} MB")
+    pypi_page.check(wheel, DIST / f"eyas-{version()}.pypi.html")
     return packages
 
 
@@ -111,31 +164,52 @@ def install(package: Path, work: Path) -> Path:
     return python
 
 
-def main() -> None:
-    """Check and build."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--packages", action="store_true", help="without the checks")
-    packages_only = parser.parse_args().packages
-    release = version()
-    print(f"Eyas {release}")
-    missing = texts_of(release.partition(".dev")[0])
-    if run("git", "status", "--porcelain"):
-        missing.append("git: there are changes that are not committed")
-    if missing:
-        raise SystemExit("\n".join(missing))
-    for command in () if packages_only else CHECKS:
-        run(*command)
+def packages_of(release: str) -> None:
+    """Build the packages, try each, and list their parts."""
     with tempfile.TemporaryDirectory(prefix="eyas-release-") as folder:
         for package in build():
             python = install(package, Path(folder))
         parts = DIST / f"eyas-{release}.cdx.json"
         run("cyclonedx-py", "environment", "--of", "JSON", "-o", parts, python)
+
+
+def main() -> None:
+    """Check and build."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--packages", action="store_true", help="without the checks")
+    parser.add_argument("--tag", metavar="VERSION", help="date and commit the texts, and tag")
+    parser.add_argument("--account", help="with --tag: the account on GitHub, where OWNER stands")
+    parser.add_argument("--notes", action="store_true", help="print the changelog of this version")
+    asked = parser.parse_args()
+    release = version()
+    if asked.notes:
+        print(notes(release.partition(".dev")[0]))
+        return
+    print(f"Eyas {release}")
+    if run("git", "status", "--porcelain"):
+        raise SystemExit("git: there are changes that are not committed")
+    if asked.tag:
+        dated(asked.tag, f"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}", asked.account)
+        # In a process of its own, which reads the texts that were just written.
+        again = [sys.executable, __file__, *(["--packages"] if asked.packages else [])]
+        run("git", "tag", "-a", f"v{asked.tag}", "-m", f"Eyas {asked.tag}")
+        if subprocess.run(again, cwd=ROOT).returncode:
+            run("git", "tag", "-d", f"v{asked.tag}")
+            raise SystemExit(f"the tag v{asked.tag} is taken back; the commit stays")
+        return
+    missing = texts_of(release.partition(".dev")[0])
+    if missing and ".dev" not in release:
+        raise SystemExit("\n".join(missing))
+    for command in () if asked.packages else CHECKS:
+        run(*command)
+    packages_of(release)
     print(*(f"{path.name}: {path.stat().st_size:,} bytes" for path in DIST.iterdir()), sep="\n")
     if ".dev" in release:
-        tag = f"v{release.partition('.dev')[0]}"
-        print(f"{release} is in development: tag the commit (git tag -s {tag}) and run this again")
+        tag = release.partition(".dev")[0]
+        print(f"All is well. {release} is in development; to release it:")
+        print(f"python tools/release.py --tag {tag}  # it mends:", *missing, sep="\n    ")
     else:
-        print(f"git push origin v{release}  # publishes: .github/workflows/release.yml")
+        print(f"git push origin HEAD v{release}  # publishes: .github/workflows/release.yml")
 
 
 if __name__ == "__main__":

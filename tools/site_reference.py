@@ -3,16 +3,20 @@
 python tools/site_reference.py commands    # prints one of them, as Markdown
 """
 
+import inspect
 import json
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from enum import Enum
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import eyas
 from eyas.engine.core.allowed import describe
 from eyas.engine.core.config import Config, entries_of, group_of
+from eyas.engine.envs.choice import EnvChoices
 from eyas.engine.settings.schema import field_texts
 
 NAMES: dict[str, tuple[str, ...]] = {
@@ -72,7 +76,7 @@ NAMES: dict[str, tuple[str, ...]] = {
 
 
 def api() -> str:
-    """Return the directives that document every public name from its docstring.
+    """Return a table for each group of public names, which lead to the pages of the groups.
 
     Raises:
         ValueError: A name is in no group, or one is not public.
@@ -81,15 +85,63 @@ def api() -> str:
     odd = set(listed) ^ (set(eyas.__all__) - {"__version__", "build_id"})
     if odd:
         raise ValueError(f"tools/site_reference.py: NAMES: {', '.join(sorted(odd))}")
-    return "\n\n".join(f"## {title}\n\n{_directives(names)}" for title, names in NAMES.items())
+    return "\n\n".join(
+        f"## [{title}](api/{page_of(title)}.md)\n\n{_summary(names)}"
+        for title, names in NAMES.items()
+    )
+
+
+def page_of(title: str) -> str:
+    """Return the name of the page of a group."""
+    return title.lower().replace(" ", "-")
+
+
+def _summary(names: tuple[str, ...]) -> str:
+    """Return a table of names, each with the first sentence of its docstring."""
+    rows = ["| | |", "|---|---|"]
+    for name in names:
+        value = getattr(eyas, name)
+        about = (inspect.getdoc(value) or "") if callable(value) else ""  # else of its type
+        first = " ".join(about.split("\n\n")[0].split()).partition(". ")[0].rstrip(".")
+        rows.append(f"| {{py:obj}}`~eyas.{name}` | {_sentence(first)} |")
+    return "\n".join(rows)
+
+
+def _sentence(text: str) -> str:
+    """Return a sentence of a docstring as Markdown: code stays code."""
+    parts = text.split("`")
+    return "`".join(part if i % 2 else _plain(part) for i, part in enumerate(parts))
 
 
 def _directives(names: tuple[str, ...]) -> str:
+    """Return the directives that document names from their docstrings."""
     kinds = {name: "data" if name.isupper() else "function" for name in names}
     kinds |= {name: "class" for name in names if isinstance(getattr(eyas, name), type)}
     kinds |= {name: "data" for name in names if not callable(getattr(eyas, name))}
-    lines = [f".. auto{kinds[name]}:: eyas.{name}\n" for name in names]
+    lines = [f".. auto{kinds[name]}:: eyas.{name}{_with_choices(name)}\n" for name in names]
     return "```{eval-rst}\n" + "\n".join(lines) + "```"
+
+
+def _with_choices(name: str) -> str:
+    """Return the signature of what takes `**choices`, with their names; "" of all else."""
+    value = getattr(eyas, name)
+    try:
+        given = inspect.signature(value).parameters
+    except (TypeError, ValueError):
+        return ""
+    if "choices" not in given:
+        return ""
+    words, named = [], False
+    for each in given.values():
+        named = named or each.kind is each.KEYWORD_ONLY
+        if each.name == "choices":
+            words += [] if named else ["*"]
+            words += [f"{key}=..." for key in EnvChoices.__annotations__]
+        else:
+            words += ["*"] if each.kind is each.KEYWORD_ONLY and "*" not in words else []
+            shown = str(each.default) if isinstance(each.default, Enum) else repr(each.default)
+            words.append(each.name if each.default is each.empty else f"{each.name}={shown}")
+    return f"({', '.join(words)})"
 
 
 def commands() -> str:
@@ -222,7 +274,12 @@ def history() -> str:
     return str(page(bench / "history"))
 
 
-MADE = {"api": api, "commands": commands, "history": history}
+MADE: dict[str, Callable[[], str]] = {
+    "api": api,
+    **{f"api/{page_of(title)}": partial(_directives, names) for title, names in NAMES.items()},
+    "commands": commands,
+    "history": history,
+}
 """What a page gets in the place of `<!-- site: NAME -->`."""
 
 if __name__ == "__main__":

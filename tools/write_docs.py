@@ -14,6 +14,7 @@ import looks_bench
 import site_reference
 from plan_page import page_of_records, schema_text
 from standings import standings
+from version import REPOSITORY
 
 from eyas.benchmark.policies.shipped import shipped_names
 from eyas.benchmark.report.reproduce.model_card import model_card
@@ -23,6 +24,7 @@ from eyas.cli.bench.measurement import Measurement, measurement_cells
 from eyas.dat.settings.keys import ENTRIES
 from eyas.dat.settings.layout import original_defaults
 from eyas.engine.exports.label import FIELDS, LabelField, label_schema
+from eyas.engine.settings.schema import config_schema
 
 DOCS = Path(__file__).parents[1] / "docs"
 BEGIN, END = "<!-- made by tools/write_docs.py -->", "<!-- end -->"
@@ -79,6 +81,12 @@ def looks_tables() -> str:
     )
 
 
+def settings_schema() -> str:
+    """Return the JSON schema of the settings, with the address by which editors find it."""
+    schema = {"$id": f"{REPOSITORY}/raw/main/docs/settings.schema.json", **config_schema()}
+    return json.dumps(schema, ensure_ascii=False) + "\n"
+
+
 def made(page: str, table: str) -> str:
     """Return a page with its made part replaced."""
     head, rest = page.split(BEGIN)
@@ -100,6 +108,7 @@ def documents() -> dict[Path, str]:
         files: made(files.read_text(), original_keys()),
         labels: made(labels.read_text(), label_table()),
         DOCS / "labels.schema.json": schema,
+        DOCS / "settings.schema.json": settings_schema(),
         plan: made(plan.read_text(), page_of_records()),
         DOCS / "maps" / "plan.schema.json": schema_text(),
         **{DOCS / "policies" / f"{name}.md": model_card(name) + "\n" for name in shipped_names()},

@@ -38,7 +38,7 @@ def test_references_are_made_from_the_code(site):
     def text(name):
         return (site / "reference" / name).read_text()
 
-    assert 'id="eyas.PolicyInput.snapshot"' in text("api.html")
+    assert 'id="eyas.PolicyInput.snapshot"' in text("api/policies-and-trackers.html")
     assert "--episode" in text("commands.html")
     assert "tracker.wind.speed" in text("settings.html")
 

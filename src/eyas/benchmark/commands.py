@@ -13,6 +13,7 @@ from eyas.engine.terminal.options import (
     AsJson,
     Overwrite,
     Plots,
+    Private,
     Quiet,
     Ray,
     Resume,
@@ -428,3 +429,25 @@ def policy_card(
     if name not in shipped_names():
         raise UnknownNameError("NAME", name, shipped_names())
     typer.echo(model_card(name))
+
+
+@policies.command("push")
+def push_policy(
+    policy: Annotated[
+        str, typer.Argument(help="Name of a trained policy, or the ONNX file of another.")
+    ],
+    repository: Annotated[
+        str, typer.Argument(metavar="NAME", help="ACCOUNT/NAME on the Hugging Face hub.")
+    ],
+    private: Private = False,
+    quiet: Quiet = False,
+) -> None:
+    """Publish a policy with its model card on the Hugging Face hub."""
+    from eyas.benchmark.report.reproduce.hub_card import hub_files, network_of
+    from eyas.engine.exports.hub import HubRepository
+
+    network_of(policy)  # before a repository is made
+    place = HubRepository(repository, "model", private=private or None)
+    place.push(hub_files(policy, place.name), f"Policy {policy}, of Eyas")
+    if not quiet:
+        typer.echo(place.url)

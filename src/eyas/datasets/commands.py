@@ -3,16 +3,19 @@
 import logging
 import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from eyas.engine.core.errors import ConfigError
 from eyas.engine.terminal.options import (
     SEVERAL,
     Out,
     Overrides,
     Overwrite,
     Plots,
+    Private,
+    PushToHub,
     Quiet,
     Ray,
     Resume,
@@ -23,6 +26,9 @@ from eyas.engine.terminal.options import (
     refuse_both,
     to_write,
 )
+
+if TYPE_CHECKING:
+    from eyas.engine.exports.hub import HubRepository
 
 
 def export(
@@ -63,7 +69,6 @@ def export(
     quiet: Quiet = False,
 ) -> None:
     """Export a recording in the formats of other tools: COCO, MOTChallenge, GOT-10k, YOLO, ..."""
-    from eyas.engine.core.errors import ConfigError
     from eyas.engine.recordings.run import run
 
     refuse_both(resume=resume, overwrite=overwrite)
@@ -205,6 +210,8 @@ def make_dataset(
     trust: Annotated[
         bool, typer.Option("--trust", help="Let the recipe name code, which is then run.")
     ] = False,
+    push_to_hub: PushToHub = None,
+    private: Private = False,
     resume: Resume = False,
     quiet: Quiet = False,
 ) -> None:
@@ -215,6 +222,12 @@ def make_dataset(
 
     if quiet:
         logging.getLogger("eyas").setLevel(logging.ERROR)
+    if push_to_hub is not None and shard is not None:
+        raise ConfigError(
+            "--push-to-hub: not with --shard: merge the shards, then eyas dataset push"
+        )
+    # Before hours of work: whether the hub knows the user and takes the name.
+    repository = None if push_to_hub is None else _repository(push_to_hub, private=private)
     making = Making(workers=workers, resume=resume, quiet=quiet)
     asked = Asked(
         frames,
@@ -234,6 +247,38 @@ def make_dataset(
         ray=ray,
         trust=trust,
     )
+    if repository is not None:
+        _push(Path(out), repository, quiet=quiet)
+
+
+@dataset_app.command("push")
+def push_dataset(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished data set.")],
+    repository: Annotated[
+        str, typer.Argument(metavar="NAME", help="ACCOUNT/NAME on the Hugging Face hub.")
+    ],
+    private: Private = False,
+    quiet: Quiet = False,
+) -> None:
+    """Publish a data set on the Hugging Face hub."""
+    from eyas.datasets.hub import require_finished
+
+    require_finished(folder)
+    _push(folder, _repository(repository, private=private), quiet=quiet)
+
+
+def _repository(name: str, *, private: bool) -> "HubRepository":
+    from eyas.engine.exports.hub import HubRepository
+
+    return HubRepository(name, "dataset", private=private or None)
+
+
+def _push(folder: Path, repository: "HubRepository", *, quiet: bool) -> None:
+    from eyas.datasets.hub import push
+
+    push(folder, repository)
+    if not quiet:
+        typer.echo(repository.url)
 
 
 @dataset_app.command("merge")

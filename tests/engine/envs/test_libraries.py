@@ -1,5 +1,7 @@
 """Short real runs of other libraries in our environments."""
 
+from pathlib import Path
+
 import gymnasium
 import numpy as np
 import pytest
@@ -71,6 +73,20 @@ def test_torchrl_refuses_the_mode_that_it_cannot_use():
     gym = pytest.importorskip("torchrl.envs.libs.gym")
     with pytest.raises(RuntimeError, match="autoreset"):
         gym.GymWrapper(EyasVectorEnv(2, SHORT, observation=SMALL)).rollout(3)
+
+
+@pytest.mark.filterwarnings("ignore")  # TorchRL warns of its own parts
+def test_torchrl_learns_in_them(monkeypatch):
+    """The example; those of skrl, Tianshou and RLlib want other versions, or more of them."""
+    pytest.importorskip("torchrl.collectors")
+    monkeypatch.syspath_prepend(Path(__file__).parents[3] / "examples")
+    import learn_torchrl
+    import torch
+
+    torch.manual_seed(0)
+    before = [each.clone() for each in learn_torchrl.Looks(7).parameters()]
+    after = learn_torchrl.main(decisions=128, num_envs=2, rollout=64).parameters()
+    assert all((own != one).any() for own, one in zip(before, after, strict=True))
 
 
 @pytest.mark.parametrize(("rewarded", "success"), [(4, False), (5, True)])

@@ -41,6 +41,16 @@ POLICIES = (
 the two equal."""
 SEVERAL = "may be given several times"
 
+PushToHub = Annotated[
+    str | None,
+    typer.Option(
+        "--push-to-hub", metavar="NAME", help="Publish it as ACCOUNT/NAME on the Hugging Face hub."
+    ),
+]
+Private = Annotated[
+    bool, typer.Option("--private", help="Only you may see a repository that is made there.")
+]
+
 MapName = Annotated[
     str | None,
     typer.Option("--map", help="Name of the map, FILE.plan.json, or package.module:attribute."),
