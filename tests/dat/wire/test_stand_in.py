@@ -158,7 +158,7 @@ def test_map_and_weather_are_those_of_the_world_file(tmp_path, words, told):
     [
         ([], "no argument is not allowed"),
         (["--batch"], "--batch is not allowed"),
-        (["worlds/la.wbt"], "tells no map and weather"),
+        (["worlds/la.wbt"], "names no map and weather"),
         (["worlds/lake-day.wbt"], "no folder above it holds 'Webots_Simulation'"),
     ],
 )

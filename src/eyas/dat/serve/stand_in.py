@@ -63,7 +63,7 @@ def serve_arguments(words: Sequence[str], folder: Path, root: Path | None = None
             holds `Webots_Simulation`.
 
     Raises:
-        ConfigError: No world file is named, or one whose name tells no map and weather.
+        ConfigError: No world file is named, or one whose name names no map and weather.
         DataFileError: No folder of the original was found.
     """
     worlds = [word for word in words if word.endswith(".wbt")]
@@ -76,7 +76,7 @@ def serve_arguments(words: Sequence[str], folder: Path, root: Path | None = None
     told = _WORLD.read({"the world": world})
     if not told:
         raise ConfigError(
-            f"{PROGRAM} (Eyas): {shown(world)} tells no map and weather; allowed: <map>-<weather>"
+            f"{PROGRAM} (Eyas): {shown(world)} names no map and weather; allowed: <map>-<weather>"
             ".wbt, such as citystreet-night.wbt or simpleway-grass_day.wbt"
         )
     chosen = root or _root(folder / _on_this_system(world), folder)

@@ -33,7 +33,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
 
     The observation is what the camera sees, RGB uint8, shape (84, 84, 3): the configured 4:3 view
     scaled to a square, as in the original; `env.observation` changes it. `info` holds by name what
-    `eyas.engine.envs.information` tells, and after a step the terms of the reward.
+    `eyas.engine.envs.information` names, and after a step the terms of the reward.
 
     A copy, by `copy.deepcopy` or `pickle`, goes on where the environment is. One with live traffic
     or with logs cannot be copied.
