@@ -16,7 +16,7 @@ import pytest
 import shapely
 
 from eyas.engine.core.rng import stream
-from eyas.engine.sim.assets import load_assets
+from eyas.engine.sim.assets import _traffic
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.crowd import crowd_of
 from eyas.maps.buildings.facades import mesh_of
@@ -48,8 +48,9 @@ def of_the_scene():
 
 def of_the_people():
     """The ways of pedestrians, and those of the vehicles that they let pass."""
-    config = SimConfig()
-    traffic = load_assets(config.world, config.traffic, 1, crowd_of(config)).traffic
+    config = SimConfig(traffic={"signals": "working"})
+    # What is drawn takes most of the time in which `load_assets` makes all.
+    traffic = _traffic(config.world.map, 0, config.traffic, 1, crowd_of(config))
     table = traffic.motion.sampled().table
     return [np.ascontiguousarray(table[name]) for name in table.dtype.names]
 
