@@ -72,11 +72,11 @@ def unwanted(root: Path) -> Iterator[str]:
 
     Parts that are made from the code, cards of policies and dated notes are left out.
     """
-    for place, line, text in _texts(root):
+    for place, text in _pages(root):
         if re.match(r"README|CONTRIBUTING|docs/(?!lab/|policies/)", place):
             plain = re.sub(f"{MADE}|{NO_PROSE.pattern}", _lines_of, text, flags=NO_PROSE.flags)
             for found in UNWANTED.finditer(plain):
-                at = line + plain.count("\n", 0, found.start())
+                at = 1 + plain.count("\n", 0, found.start())
                 yield f"{place}:{at}: write it otherwise: {' '.join(found[0].split())}"
 
 
@@ -107,11 +107,17 @@ def _is_word(word: str) -> bool:
     return word.isascii() and word[1:].islower()
 
 
-def _texts(root: Path) -> Iterator[tuple[str, int, str]]:
-    """Yield each text of prose: its file, its first line, itself."""
+def _pages(root: Path) -> Iterator[tuple[str, str]]:
+    """Yield each document: its file, its text."""
     for page in sorted({page for pattern in PAGES for page in root.glob(pattern)}):
         if "zh" not in page.parts:
-            yield page.relative_to(root).as_posix(), 1, page.read_text()
+            yield page.relative_to(root).as_posix(), page.read_text()
+
+
+def _texts(root: Path) -> Iterator[tuple[str, int, str]]:
+    """Yield each text of prose: its file, its first line, itself."""
+    for place, text in _pages(root):
+        yield place, 1, text
     for folder in CODE:
         for file in sorted((root / folder).rglob("*.py")):
             place, source = file.relative_to(root).as_posix(), file.read_text()

@@ -10,7 +10,6 @@ from eyas.engine.render.pack.triangles import gradients
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.world.roads.areas import road_area
 from eyas.maps.citystreet import CITYSTREET
-from eyas.maps.plan.build import build_scene
 from eyas.maps.roads.painting import MARGIN_HEIGHT
 from eyas.maps.roads.wear import WEAR_HEIGHTS
 
@@ -206,14 +205,6 @@ def test_every_triangle_has_an_object_and_is_finite(scene):
 
 def test_triangles_are_few_enough_for_small_machines(scene):
     assert len(scene.static.triangles) < 60_000
-
-
-@pytest.mark.slow
-def test_building_again_gives_the_same_bytes(scene, network):
-    again = build_scene(CITYSTREET.plan(network, 0), network)
-    assert again.static.positions.tobytes() == scene.static.positions.tobytes()
-    assert again.fixtures.pose.tobytes() == scene.fixtures.pose.tobytes()
-    assert again.colliders.prism_points.tobytes() == scene.colliders.prism_points.tobytes()
 
 
 def test_every_static_triangle_can_be_shaded(scene):

@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eyas.engine.core.errors import DataFileError
-from eyas.engine.sim.scenes import load_scene
+from eyas.engine.sim.scenes import _text_of, load_scene
 from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.world.maps import MAPS
@@ -25,7 +25,7 @@ from eyas.maps.land.relief import relief_of
 from eyas.maps.osm.features import House, Survey
 from eyas.maps.plan import build, plan
 from eyas.maps.plan.build import build_scene
-from eyas.maps.plan.file import problems, read_plan, text_of, write_plan
+from eyas.maps.plan.file import plan_of, problems, read_plan, text_of, write_plan
 
 HASHES = {
     ("citystreet", "summer"): "19bbef7c7875170a",
@@ -145,8 +145,7 @@ def areas_of(made, season):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in MAPS.built_in if "simpleway" not in name])
 def test_no_two_covers_overlap_and_nothing_on_the_floor_is_bare(name):
-    recipe = MAPS.get(name)
-    made = recipe.plan(recipe.shipped_network(), 0)
+    made = plan_of(_text_of(name, 0).tobytes())
     areas = list(areas_of(made, "summer"))
     total, joined = sum(area.area for area in areas), shapely.union_all(areas)
     assert total == pytest.approx(joined.area, rel=2e-4)
@@ -166,8 +165,7 @@ def test_no_two_covers_overlap_and_nothing_on_the_floor_is_bare(name):
 
 def sample():
     """A plan with a layer of each sort."""
-    recipe = MAPS.get("desert")
-    made = json.loads(text_of(recipe.plan(recipe.shipped_network(), 0)))
+    made = json.loads(_text_of("desert", 0).tobytes())
     square = [[0, 0], [9, 0], [9, 9], [0, 9]]
     shell = {"outline": square, "height": 6.0, "facade": "facade_brick", "cover": {}}
     chance = {"stream": "x"}

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import shapely
 
+from eyas.engine.sim.scenes import load_scene
 from eyas.engine.state.mesh import Surface
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.traffic.recording_file import load
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.weather import Season
-from eyas.maps.plan.build import build_scene
 from eyas.maps.simpleway.layout import paved
 from eyas.maps.simpleway.roads import ROADS, road_graph, road_lines
 from eyas.maps.simpleway.scenery import SKINS
@@ -23,13 +23,13 @@ def network():
 
 
 @pytest.fixture(scope="module")
-def desert(network):
-    return build_scene(MAPS.get("simpleway-desert").plan(network, 0), network, Season.WINTER)
+def desert():
+    return load_scene("simpleway-desert", 0, Season.WINTER)
 
 
 @pytest.fixture(scope="module")
-def farm(network):
-    return build_scene(MAPS.get("simpleway-farm").plan(network, 0), network, Season.WINTER)
+def farm():
+    return load_scene("simpleway-farm", 0, Season.WINTER)
 
 
 ORIGINAL = {
