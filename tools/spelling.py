@@ -110,7 +110,7 @@ def _is_word(word: str) -> bool:
 def _pages(root: Path) -> Iterator[tuple[str, str]]:
     """Yield each document: its file, its text."""
     for page in sorted({page for pattern in PAGES for page in root.glob(pattern)}):
-        if "zh" not in page.parts:
+        if "zh" not in page.relative_to(root).parts:
             yield page.relative_to(root).as_posix(), page.read_text()
 
 

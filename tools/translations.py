@@ -5,7 +5,8 @@
 
 A translation names its page in its first line. `docs/zh/translated.json` holds the hash of each
 page as it was when it was translated, so a changed page makes its translation stale until it is
-read again. Code blocks are compared word by word, whatever the hash says.
+read again; tables that tools write into a page are no part of it. Code blocks are compared word by
+word, whatever the hash says.
 """
 
 import argparse
@@ -17,6 +18,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 KNOWN = ROOT / "docs/zh/translated.json"
+MADE = re.compile(r"<!-- (?:made by|table) .*?<!-- end.*?-->", re.DOTALL)
 BLOCK = re.compile(r"^```(?:sh|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -32,8 +34,8 @@ def pairs(root: Path = ROOT) -> dict[Path, Path]:
 
 
 def hash_of(page: Path) -> str:
-    """Return the hash of a page."""
-    return sha256(page.read_bytes()).hexdigest()[:16]
+    """Return the hash of a page, without the tables that tools write into it."""
+    return sha256(MADE.sub("", page.read_text()).encode()).hexdigest()[:16]
 
 
 def stale(root: Path = ROOT) -> list[str]:

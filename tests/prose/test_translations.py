@@ -35,6 +35,16 @@ def test_a_changed_page_names_its_translation(translations, tmp_path):
     assert line.startswith("docs/zh/start.md: stale: docs/start.md has changed")
 
 
+def test_a_table_that_a_tool_writes_leaves_its_translation_as_new(translations, tmp_path):
+    test_a_changed_page_names_its_translation(translations, tmp_path)
+    known = translations.stale(tmp_path)
+    for name, cell in (("leaderboard", "| `fast` | pixels |"), ("evaluation", "| `hover` | 300 |")):
+        page = tmp_path / f"docs/{name}.md"
+        assert cell in page.read_text()
+        page.write_text(page.read_text().replace(cell, "| `other` | 1 |"))
+    assert translations.stale(tmp_path) == known
+
+
 def test_a_command_that_differs_is_seen(translations, tmp_path):
     test_a_changed_page_names_its_translation(translations, tmp_path)
     page = tmp_path / "docs/zh/dat.md"
