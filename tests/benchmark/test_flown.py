@@ -101,9 +101,9 @@ def test_velocities_steer_where_the_drone_is_told_to_be(batch):
     env = Follow({"actions": "velocity"}).env
     state = batch.snapshot()
     place, still = state.targets.centre[:, :2], np.zeros((8, 2))
-    before = np.asarray(flown_over(state, place, still, env))[:, :2]
+    before = np.asarray(flown_over(state, place, still, still, env))[:, :2]
     state.trackers.commanded_position[:, 0] += 3.0
-    change = np.asarray(flown_over(state, place, still, env))[:, :2] - before
+    change = np.asarray(flown_over(state, place, still, still, env))[:, :2] - before
     yaw = state.trackers.euler[:, 2]
     assert change == pytest.approx(-3.0 * np.stack([np.cos(yaw), -np.sin(yaw)], axis=1))
 

@@ -167,6 +167,8 @@ _OUTPUT = "what this run, or an earlier one into the same folder, has written"
 _CODE = "a file that is code, and is read only if its user says so"
 _SOCKET = "a socket, tested in the servers' part"
 OWN = {
+    "cli.bring:_what_policy": "names in a zip, and a pickle's bytes, which are not unpickled",
+    "datasets.hub:hub_files": "a data set of the user's own, whose card is read as text",
     "lanes.text_index:TextIndex.json_of": _PACKAGE,
     "maps.traffic.tables:forms": _PACKAGE,
     "maps.osm.driving_side:usual_side": _PACKAGE,

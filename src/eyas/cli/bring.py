@@ -3,6 +3,7 @@
 import json
 import shlex
 import zipfile
+import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -266,14 +267,19 @@ def _pickle(path: Path) -> Brought:
 
 def _what_policy(path: Path) -> str:
     """Return what a file of PyTorch is, by what is in it; nothing is unpickled."""
-    module, names = path.read_bytes(), {"data.pkl"}  # of old versions of PyTorch
+    names = {"data.pkl"}  # of old versions of PyTorch
+    with path.open("rb") as file:
+        module = file.read(_PICKLE)
     if zipfile.is_zipfile(path):
-        with zipfile.ZipFile(path) as archive:
-            inside = {name.rpartition("/")[2]: name for name in archive.namelist()}
-            names = set(inside)
-            pickle = inside.get("data.pkl")
-            small = pickle and archive.getinfo(pickle).file_size < _PICKLE
-            module = archive.read(pickle) if pickle and small else b""
+        try:
+            with zipfile.ZipFile(path) as archive:
+                inside = {name.rpartition("/")[2]: name for name in archive.namelist()}
+                names = set(inside)
+                pickle = inside.get("data.pkl")
+                small = pickle and archive.getinfo(pickle).file_size < _PICKLE
+                module = archive.read(pickle) if pickle and small else b""
+        except (zipfile.BadZipFile, zlib.error, OSError, RuntimeError, ValueError) as error:
+            raise DataFileError(f"{path}: a zip file that cannot be read: {error}") from None
     elif path.suffix == ".zip" or not module.startswith(b"\x80"):
         raise DataFileError(f"{path}: neither a zip file nor one of PyTorch")
     if {"data", "policy.pth"} <= names:

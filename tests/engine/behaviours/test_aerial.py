@@ -11,6 +11,7 @@ from eyas.engine.state.terrain import reliefs
 from eyas.engine.targets.catalogue import kind_index
 from eyas.engine.targets.habit import AERIAL, Behaviour
 from eyas.engine.task.clearance import Clearance, Margin
+from eyas.engine.world.weather import Season
 
 from .conftest import CLOCK, group, table_of
 
@@ -32,7 +33,7 @@ def test_drones_fly_through_nothing(hills, behaviour):
     kinds = np.full(table.shape[1], kind_index("Quadrotor"), np.int32)
     motion = SampledMotion(table, kinds, CLOCK.rate, 0.0).packed()
     at = places(table).reshape(-1, 3)
-    solids = load_solids(scene.name, 0, "summer")
+    solids = load_solids(scene.name, 0, Season.SUMMER)
     lifted = Clearance(solids, scene.terrain, motion).lifted(at, BODY)
     assert (lifted <= at[:, 2] + 0.15).mean() > 0.99  # those below crowns brush a twig
 

@@ -90,7 +90,7 @@ VEHICLES = {f"kind {name}" for name in ("passenger", "bus", "truck", "trailer", 
         ("film", {"engine/video"}, set()),
         ("data", {"dat"}, set()),
         ("reward", {"engine/task"}, set()),
-        ("ambient", {"engine/render"}, {"ambient"}),
+        ("ambient", {"engine/render"}, {"ambient", "people"}),  # drones fly over what is high
         ("texture", {"maps"}, {"textures"}),
         ("cars", {"engine/targets"}, VEHICLES | {"people", "geometry"}),
         ("shapes", {"engine/targets"}, {"people", "geometry", "kind Quadrotor", "kind bird"}),

@@ -15,7 +15,7 @@ AIR = Protocol(
         "done": {"total_steps": 30_000, "no_reward_steps": NEVER},
     },
     targets=("Quadrotor",),
-    episodes=5,
+    episodes=6,
     columns=("kept", "tsr", "losses", "found_again", "seen", "flawless"),
     rank="kept",
     groups={"way": lambda record: record.variant},

@@ -152,6 +152,18 @@ _ENDS: tuple[tuple[str, str, tuple[str, ...], tuple[str, ...]], ...] = (
         ("recovered", "recovery_time", "followed_wrong", "tsr"),
     ),
     ("mission", "mission", ("hover", "sighted", "eyas-words"), ("score", *STAGES)),
+    (
+        "crowd",
+        "crowd",
+        ("hover", "servo", "sighted", "eyas"),
+        ("kept_share", "identity_switches", "kept", "tsr"),
+    ),
+    (
+        "coat",
+        "crowd",
+        ("hover", "sighted", "eyas"),
+        ("kept_share", "kept_before", "kept_after", "tsr"),
+    ),
 )
 """Tables with the floor, the ceiling and the best policy that ships, in one set of episodes."""
 
