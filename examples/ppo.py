@@ -2,9 +2,10 @@
 
 To be read from top to bottom and changed. Nothing is hidden: the network, the rollout, the
 advantages and the update stand here; only the environments come from Eyas. `eyas train` is the same
-method with checkpoints, curricula and export.
+method with checkpoints and curricula. `eyas evaluate --policy eyas-ppo.pt2` flies what it saves.
 """
 
+import json
 import time
 from dataclasses import dataclass
 
@@ -49,7 +50,15 @@ class Options:
     """Weight of the critic's loss."""
     max_gradient: float = 0.5
     seed: int = 0
-    save: str = "eyas-ppo.pt"
+    save: str = "eyas-ppo.pt2"
+
+
+class Scaled(nn.Module):
+    """Pictures as numbers of about -2 to 2."""
+
+    def forward(self, pictures: Tensor) -> Tensor:
+        """Return the numbers of pictures, uint8, any shape."""
+        return (pictures.float() - 110.0) / 60.0
 
 
 class Agent(nn.Module):
@@ -58,6 +67,7 @@ class Agent(nn.Module):
     def __init__(self, actions: int = 7) -> None:
         super().__init__()
         self.body = nn.Sequential(
+            Scaled(),
             layer(nn.Conv2d(3, 16, 6, stride=3)),
             nn.ReLU(),
             layer(nn.Conv2d(16, 32, 4, stride=2)),
@@ -71,7 +81,7 @@ class Agent(nn.Module):
 
     def forward(self, pictures: Tensor) -> tuple[Categorical, Tensor]:
         """Return the policy and the value of each picture, uint8, shape (N, 3, 48, 48)."""
-        features = self.body((pictures.float() - 110.0) / 60.0)
+        features = self.body(pictures)
         return Categorical(logits=self.policy(features)), self.critic(features).squeeze(1)
 
 
@@ -175,8 +185,19 @@ def main(options: Options | None = None) -> list[float]:
         entropy = update(agent, optimiser, data, gains, options)
         made, rate = (number + 1) * size, (number + 1) * size / (time.monotonic() - start)
         print(f"{made:8d}  reward {reward:.3f}  entropy {entropy:.2f}  {rate:.0f}/s", flush=True)
-    torch.save(agent.state_dict(), options.save)
+    save(agent, options.save)
     return curve
+
+
+def save(agent: Agent, path: str) -> None:
+    """Write the policy without the critic: a program for any number of pictures, with what `env`
+    must be for it.
+    """
+    network = nn.Sequential(agent.body, agent.policy).eval()
+    pictures = torch.zeros((2, 3, 48, 48), dtype=torch.uint8)
+    several = ({0: torch.export.Dim("count", min=1, max=4096)},)
+    program = torch.export.export(network, (pictures,), dynamic_shapes=several)
+    torch.export.save(program, path, extra_files={"eyas.json": json.dumps(SETTINGS["env"])})
 
 
 if __name__ == "__main__":

@@ -70,6 +70,7 @@ def test_shards_of_several_machines_are_the_whole(whole, tmp_path, capsys):
     other = PLAN.model_copy(update={"episodes": 3})
     with pytest.raises(OutputError, match=r"shard1: cannot be continued: 'episodes' was 2"):
         join_shards(other, tmp_path / "other", folders)
+    assert not (tmp_path / "other").exists()
     with pytest.raises(ConfigError, match=r"'1/9' is not allowed: at most 4 shards.*--batch"):
         run(PLAN, tmp_path / "many", runner=one_shard(run_here, 1, 9), quiet=True)
 

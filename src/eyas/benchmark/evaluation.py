@@ -119,14 +119,22 @@ def join_shards(plan: EvaluationPlan, out: Path, shards: Sequence[Path]) -> None
         EyasError: A setting is wrong, or one of the folders has an evaluation of something else.
     """
     made = stamp(plan).model_copy(update={"entry": check(plan)})
+    flown = []
+    for folder in shards:  # before anything is written
+        found, records = load_run(folder, trust=True)
+        _require_same(folder, found, made)
+        flown.append(records)
     with folder_lock(out, "evaluating into it"):
         known = {record.name for record in _prepared(out, made, resume=True, overwrite=False)}
-        for folder in shards:
-            found, records = load_run(folder, trust=True)
-            _require_same(folder, found, made)
+        for records in flown:
             with RecordFile(out / EPISODES) as file:
                 file.add(record for record in records if record.name not in known)
             known |= {record.name for record in records}
+    if len(known) < plan.count:
+        _LOG.warning(
+            "--join: the folders have %d of %d episodes; the others are flown now",
+            *(len(known), plan.count),
+        )
 
 
 def one_shard(runner: Runner, number: int, count: int) -> Runner:

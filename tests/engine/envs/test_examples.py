@@ -1,5 +1,6 @@
 """The examples run; those of maps and of published figures have tests of their own."""
 
+import subprocess
 import sys
 from pathlib import Path
 
@@ -56,18 +57,23 @@ def test_proximal_policy_optimisation_in_one_file_learns_and_repeats_itself(tmp_
     torch.set_num_threads(1)  # on a busy machine, more wait for each other
     import ppo
 
-    options = ppo.Options(decisions=128, num_envs=4, num_steps=16, save=str(tmp_path / "a.pt"))
+    options = ppo.Options(decisions=128, num_envs=4, num_steps=16, save=str(tmp_path / "a.pt2"))
     curve = ppo.main(options)
     assert len(curve) == 2
     assert capsys.readouterr().out.count("entropy") == 2
-    options.save = str(tmp_path / "b.pt")
+    options.save = str(tmp_path / "b.pt2")
     assert ppo.main(options) == curve
-    learnt, again = torch.load(tmp_path / "a.pt"), torch.load(tmp_path / "b.pt")
+    learnt, again = (torch.export.load(tmp_path / f"{name}.pt2").state_dict for name in "ab")
     torch.manual_seed(options.seed)
-    fresh = ppo.Agent().state_dict()
+    agent = ppo.Agent()
+    fresh = ppo.nn.Sequential(agent.body, agent.policy).state_dict()
     for name, weights in learnt.items():
         assert torch.equal(weights, again[name])
         assert not torch.equal(weights, fresh[name])
+    command = [sys.executable, "-m", "eyas.cli.main", "evaluate", "--quiet", "--episodes", "1"]
+    command += ["--policy", str(tmp_path / "a.pt2"), "--out", str(tmp_path / "flown")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 def test_its_advantages_are_those_of_sums_of_errors():
