@@ -145,6 +145,7 @@ _SEERS = ("hover", "sighted", "constant-velocity")
 _SHORT = (*_SEERS, "fast", "eyas")
 _KEPT = ("kept", "tsr", "losses_per_hour", "found_again")
 _ENDS: tuple[tuple[str, str, tuple[str, ...], tuple[str, ...]], ...] = (
+    ("air", "air", ("hover", "sighted", "eyas"), _KEPT),
     (
         "recover-wide",
         "recover",
