@@ -1,6 +1,6 @@
 """Let loaders and scorers of others read what `eyas export` writes, each in its own environment.
 
-    python tools/check_peers.py                  # all; lerobot downloads several GB
+    python tools/check_peers.py                  # all; lerobot and agents download several GB
     python tools/check_peers.py trackeval        # only these
     python tools/check_peers.py --venvs DIR      # keep the environments there, for the next time
 
@@ -17,7 +17,8 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
-PEERS = Path(__file__).parent / "peers"
+ROOT = Path(__file__).resolve().parents[1]
+PEERS = ROOT / "tools" / "peers"
 
 
 class Peer(NamedTuple):
@@ -29,20 +30,24 @@ class Peer(NamedTuple):
     """What pip installs, one call after the other."""
 
 
+# TorchCodec wants FFmpeg's libraries (apt install ffmpeg).
+_LEROBOT = (
+    ("torch==2.14.1", "torchvision==0.29.1", "torchcodec"),
+    ("datasets>=4,<4.2", "av<16", "numpy<2.3", "jsonlines", "draccus", "huggingface_hub"),
+    ("packaging", "einops", "deepdiff", "imageio", "opencv-python-headless", "gymnasium"),
+    ("accelerate", "termcolor", "rerun-sdk", "diffusers", "pandas"),
+    ("--no-deps", "lerobot==0.4.4"),
+)
+
 CHECKS = {
     "trackeval": Peer(("mot", "kitti"), (("trackeval>=1.3", "setuptools"),)),
     "vot": Peer(("vot",), (("vot-toolkit", "setuptools"),)),
     "nuscenes": Peer(("nuscenes",), (("nuscenes-devkit>=1.2", "setuptools"),)),
-    # TorchCodec wants FFmpeg's libraries (apt install ffmpeg).
-    "lerobot": Peer(
+    "lerobot": Peer(("lerobot",), _LEROBOT),
+    # With Eyas beside them, which flies what they have learned.
+    "agents": Peer(
         ("lerobot",),
-        (
-            ("torch==2.14.1", "torchvision==0.29.1", "torchcodec"),
-            ("datasets>=4,<4.2", "av<16", "numpy<2.3", "jsonlines", "draccus", "huggingface_hub"),
-            ("packaging", "einops", "deepdiff", "imageio", "opencv-python-headless", "gymnasium"),
-            ("accelerate", "termcolor", "rerun-sdk", "diffusers", "pandas"),
-            ("--no-deps", "lerobot==0.4.4"),
-        ),
+        (*_LEROBOT, ("transformers<5", "pyserial", "pynput", "wandb<0.25"), ("-e", str(ROOT))),
     ),
 }
 

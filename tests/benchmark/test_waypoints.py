@@ -6,12 +6,14 @@ import json
 import math
 import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from eyas.benchmark.policies.chat_agent import answer_in
+from eyas.benchmark.policies.local_model import _features, _refuse_classes
 from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.waypoints import WaypointPolicy, own_agent, way_of
 from eyas.engine.core.errors import EyasError
@@ -20,6 +22,11 @@ from eyas.engine.policies.policy import Instruction, PolicyInput, Start
 
 SIZE = (240, 320)
 DONE = {"total_steps": 9000, "no_reward_steps": 9000}  # Though the target drives away
+
+
+def seen_of(pictures):
+    """Return an observation of drones whose sensors read nothing."""
+    return {"image": pictures, "sensors": np.zeros((len(pictures), 19), np.float32)}
 
 
 class Ahead:
@@ -79,6 +86,8 @@ def test_a_way_is_flown_in_time_and_held_at_its_end():
     assert look.pictures.shape == (2, 48, 64, 3)
     assert not look.pictures[0].any()  # before the first
     assert look.pictures[1].std() > 3.0
+    assert look.state.shape == (10,)
+    assert math.hypot(*look.state[6:]) == pytest.approx(1.0, abs=1e-5)  # a quaternion
     assert (look.words, flight.agent.words, look.time) == ("a red car", "a red car", 0.0)
 
 
@@ -148,7 +157,7 @@ def test_words_are_for_those_whose_class_of_entry_has_them(tmp_path):
     policy.begin(Start(np.zeros(1, np.int64), lambda: np.zeros((1, 4), np.int32), told))
     one = np.ones(1, np.bool_)
     pictures = np.zeros((1, 240, 320, 3), np.uint8)
-    sight = PolicyInput(pictures, one, dict, dict, ~one, clock=0.0, told=told)
+    sight = PolicyInput(seen_of(pictures), one, dict, dict, ~one, clock=0.0, told=told)
     assert policy.act(sight).actions.tolist() == [[0.0] * 4]
     assert chat(tmp_path, "http://localhost:1/v1").told == {"words"}
 
@@ -164,7 +173,8 @@ def test_an_agent_that_fails_ends_its_own_flight_only():
     told = Instruction(("a", "b"), np.zeros((2, 0), np.float32))
     policy.begin(Start(np.zeros(2, np.int64), lambda: np.zeros((2, 4), np.int32), told))
     pictures = np.zeros((2, 48, 64, 3), np.uint8)
-    seen = PolicyInput(pictures, np.ones(2, np.bool_), dict, dict, np.zeros(2, np.bool_), clock=0.0)
+    everyone = np.ones(2, np.bool_)
+    seen = PolicyInput(seen_of(pictures), everyone, dict, dict, ~everyone, clock=0.0)
     decision = policy.act(seen)
     assert decision.failed.keys() == {1}
     assert decision.failed[1].line == "RuntimeError: no idea"
@@ -245,7 +255,7 @@ def test_a_model_behind_an_endpoint_flies(tmp_path, endpoint, monkeypatch):
     pictures = np.zeros((count, 48, 64, 3), np.uint8)
     pictures[0, 8, 32] = pictures[1, 24, 10] = pictures[2, 24, 54] = 255  # ahead, left, right
     everyone = np.ones(count, np.bool_)
-    sight = PolicyInput(pictures, everyone, dict, dict, ~everyone, clock=0.0)
+    sight = PolicyInput(seen_of(pictures), everyone, dict, dict, ~everyone, clock=0.0)
     actions = policy.act(sight).actions
     assert actions[0][0] > 1.0 > abs(actions[0][1])
     assert actions[1][1] > 1.0 > abs(actions[1][0])
@@ -271,7 +281,7 @@ def test_a_key_is_for_one_machine_whatever_a_file_names(tmp_path, endpoint, monk
     policy.begin(Start(np.zeros(1, np.int64), lambda: np.zeros((1, 4), np.int32), None))
     one = np.ones(1, np.bool_)
     pictures = np.zeros((1, 48, 64, 3), np.uint8)
-    policy.act(PolicyInput(pictures, one, dict, dict, ~one, clock=0.0))
+    policy.act(PolicyInput(seen_of(pictures), one, dict, dict, ~one, clock=0.0))
     assert [key for _, key, _ in server.asked] == [None]
 
 
@@ -284,7 +294,8 @@ def test_an_endpoint_that_refuses_is_one_line(tmp_path, endpoint):
         policy = chat(tmp_path, address, size=[64, 48], model=model)
         policy.begin(Start(np.zeros(1, np.int64), lambda: np.zeros((1, 4), np.int32), None))
         one = np.ones(1, np.bool_)
-        seen = PolicyInput(np.zeros((1, 48, 64, 3), np.uint8), one, dict, dict, ~one, clock=0.0)
+        pictures = np.zeros((1, 48, 64, 3), np.uint8)
+        seen = PolicyInput(seen_of(pictures), one, dict, dict, ~one, clock=0.0)
         (failure,) = policy.act(seen).failed.values()
         assert failure.line.startswith(f"ConnectionError: {address}/chat/completions: ")
         assert line in failure.line
@@ -301,3 +312,43 @@ def test_an_endpoint_that_refuses_is_one_line(tmp_path, endpoint):
 def test_a_file_of_a_model_that_is_wrong_is_one_line(tmp_path, more, line):
     with pytest.raises(EyasError, match=line):
         chat(tmp_path, **{"url": "http://localhost:1/v1"} | more)
+
+
+def test_a_policy_on_this_machine_without_its_files_is_one_line(tmp_path):
+    path = tmp_path / "agent.json"
+    for content, line in (
+        ({"lerobot": "nowhere"}, "lerobot: no config.json in the folder .*nowhere"),
+        ({"lerobot": "x", "rate": 0.0}, "rate: 0.0 is not allowed"),
+        ({"lerobot": "x", "transformers": "y"}, "lerobot"),
+        ({"transformers": "y", "device": "gpu"}, "device: 'gpu' is not allowed"),
+    ):
+        path.write_text(json.dumps(content))
+        with pytest.raises(EyasError, match=line) as caught:
+            open_policy(str(path), {})
+        assert "\n" not in str(caught.value)
+
+
+def test_a_processor_that_names_a_class_of_python_is_refused(tmp_path):
+    path = tmp_path / "policy_preprocessor.json"
+    path.write_text('{"steps": [{"class": "subprocess.Popen", "config": {"args": ["ls"]}}]}')
+    with pytest.raises(EyasError, match=r"'subprocess\.Popen' is not allowed"):
+        _refuse_classes(path)
+
+
+def test_a_robots_policy_sees_and_does_what_a_drone_can():
+    def config(inputs, action=(4,)):
+        shapes = {name: SimpleNamespace(shape=shape) for name, shape in inputs.items()}
+        acts = {"action": SimpleNamespace(shape=action)}
+        return SimpleNamespace(input_features=shapes, output_features=acts)
+
+    picture = {"observation.images.camera": (3, 48, 64)}
+    name, size = _features(config({**picture, "observation.state": (10,)}), "here")
+    assert (name, size) == ("observation.images.camera", (64, 48))
+    for wrong in (
+        config({"observation.state": (10,)}),
+        config({**picture, "observation.environment_state": (8,)}),
+        config({**picture, "observation.state": (7,)}),
+        config(picture, action=(6,)),
+    ):
+        with pytest.raises(EyasError, match=r"^here: (in|out)put_features: "):
+            _features(wrong, "here")

@@ -455,11 +455,20 @@ def _vehicle_table(folder, chance, most):
 
 @row("chat file")
 def _chat_file(folder, chance, most):
-    from eyas.benchmark.policies.chat_agent import open_chat
+    from eyas.benchmark.policies.chat_agent import open_agent
 
     path = folder / "agent.json"
     path.write_text('{"url": "http://localhost:1/v1", "model": "m", "rate": 1, "size": [64, 48]}')
-    return of_json(path, lambda: open_chat(path, {}), chance, most)
+    return of_json(path, lambda: open_agent(path, {}), chance, most)
+
+
+@row("robot policy")
+def _robot_policy(folder, chance, most):
+    from eyas.benchmark.policies.local_model import _refuse_classes
+
+    path = folder / "policy_preprocessor.json"
+    path.write_text('{"name": "a", "steps": [{"registry_name": "b", "config": {"features": {}}}]}')
+    return of_json(path, lambda: _refuse_classes(path), chance, most)
 
 
 @row("chat reply")

@@ -10,7 +10,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from eyas.benchmark.policies.chat_agent import open_chat
+from eyas.benchmark.policies.chat_agent import open_agent
 from eyas.benchmark.policies.shipped import card_of, shipped_names
 from eyas.benchmark.policies.table import ABOUT, FILES, FLIGHTS
 from eyas.engine.core.errors import EyasError
@@ -98,7 +98,7 @@ def _policies(folder: Path) -> Iterator[str]:
     yield from _files(folder, ("", "policies", "runs/*"), _NETWORKS)
     for path in _files(folder, ("", "policies"), (".json",)):
         try:
-            open_chat(folder / path, {})
+            open_agent(folder / path, {})
         except EyasError:  # a file of something else
             continue
         yield path

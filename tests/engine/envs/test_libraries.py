@@ -110,8 +110,10 @@ def test_lerobot_finds_what_its_evaluation_asks_for():
     env = make_lerobot_env(3, cfg=SHORT)
     seen, _ = env.reset(seed=[1, 2, 3])
     assert env.observation_space.contains(seen)
-    assert seen["pixels"].shape == (3, 84, 84, 3)
-    assert seen["agent_pos"].shape == (3, 19)
+    assert seen["pixels"]["camera"].shape == (3, 84, 84, 3)
+    trackers = env.env.truth().snapshot.trackers
+    state = [trackers.position, trackers.velocity, trackers.orientation]  # as data sets have it
+    np.testing.assert_allclose(seen["agent_pos"], np.concatenate(state, axis=1), rtol=1e-6)
     assert env.call("_max_episode_steps") == (10, 10, 10)
     assert "target" in env.call("task_description")[0]
     assert env.unwrapped.metadata["render_fps"] == 125

@@ -22,6 +22,7 @@ from eyas.engine.core.config import Config, validated
 from eyas.engine.core.decoding import decoded_json, read_json
 from eyas.engine.core.errors import ConfigError, DataFileError
 
+LOCAL = {"transformers", "lerobot"}  # Keys of files of models on this machine
 KEY, HOST = "EYAS_AGENT_KEY", "EYAS_AGENT_HOST"
 """Environment variables with the key that an endpoint wants, and the machine that it is for: a file
 of others could name any endpoint, which then would get the key."""
@@ -45,12 +46,9 @@ PROMPT = (
 """What the model is asked to do, where the file has no `prompt`."""
 
 
-class ChatFile(Config):
-    """A model that flies, by the file that describes it."""
+class AskedConfig(Config):
+    """How a model of language and vision is asked."""
 
-    url: Annotated[str, Field(pattern=r"^https?://\S+$")]
-    """Base of the endpoint, such as http://localhost:8000/v1."""
-    model: Annotated[str, Field(min_length=1, max_length=500)]
     answer: Literal["waypoints", "velocity", "box"] = "box"
     """What it is asked for; any of the three is understood."""
     rate: Annotated[float, Field(ge=0.01, le=125)] = 1.0
@@ -67,18 +65,25 @@ class ChatFile(Config):
     """Time from one waypoint to the next [s]."""
     prompt: Annotated[str, Field(max_length=20_000)] = PROMPT
     """With {pictures}, {width}, {height}, {step} and {form}."""
+    most_tokens: Annotated[int, Field(ge=1, le=100_000)] = 300
+
+
+class ChatFile(AskedConfig):
+    """A model behind an endpoint, by the file that describes it."""
+
+    url: Annotated[str, Field(pattern=r"^https?://\S+$")]
+    """Base of the endpoint, such as http://localhost:8000/v1."""
+    model: Annotated[str, Field(min_length=1, max_length=500)]
     timeout: Annotated[float, Field(gt=0, le=600)] = 60.0
     """How long an answer is waited for [s]."""
-    most_tokens: Annotated[int, Field(ge=1, le=100_000)] = 300
     at_once: Annotated[int, Field(ge=1, le=256)] = 8
     """How many questions are asked at the same time."""
 
 
-class ChatAgent:
+class AskedAgent:
     """Asks a model for one drone. An answer that cannot be read changes nothing."""
 
-    def __init__(self, file: ChatFile) -> None:
-        self._file = file
+    def __init__(self, file: AskedConfig) -> None:
         self.rate, self.latency, self.pictures = file.rate, file.latency, file.pictures
         self.step, self.size = file.step, file.size
         width, height = file.size
@@ -92,28 +97,48 @@ class ChatAgent:
         """No-op: every question has the words."""
 
     def plan(self, look: Look) -> object:
-        """Return the model's answer.
+        """Return the model's answer."""
+        words = look.words or "Follow the vehicle in the middle of the first picture."
+        asked = f"Target: {words} Time: {look.time:.2f} s."
+        return answer_in(self.written(self._system, asked, look.pictures), self.step, self.size)
+
+    def written(self, system: str, words: str, pictures: Picture) -> str:
+        """Return what the model writes.
+
+        Args:
+            system: What it is asked to do.
+            words: What it has to follow, and the time.
+            pictures: The newest last, shape (K, H, W, 3).
+        """
+        raise NotImplementedError
+
+
+class ChatAgent(AskedAgent):
+    """Asks a model behind an endpoint."""
+
+    def __init__(self, file: ChatFile) -> None:
+        super().__init__(file)
+        self._file = file
+
+    def written(self, system: str, words: str, pictures: Picture) -> str:
+        """Return what the model writes.
 
         Raises:
             ConnectionError: The endpoint cannot be reached, or refuses the question.
         """
-        words = look.words or "Follow the vehicle in the middle of the first picture."
-        pictures = [
-            {"type": "image_url", "image_url": {"url": _as_url(picture)}}
-            for picture in look.pictures
+        shown = [
+            {"type": "image_url", "image_url": {"url": _as_url(picture)}} for picture in pictures
         ]
-        content = [{"type": "text", "text": f"Target: {words} Time: {look.time:.2f} s."}, *pictures]
         question = {
             "model": self._file.model,
             "temperature": 0,
             "max_tokens": self._file.most_tokens,
             "messages": [
-                {"role": "system", "content": self._system},
-                {"role": "user", "content": content},
+                {"role": "system", "content": system},
+                {"role": "user", "content": [{"type": "text", "text": words}, *shown]},
             ],
         }
-        text = text_of(self._asked(question), self._file.url)
-        return answer_in(text, self.step, self.size)
+        return text_of(self._asked(question), self._file.url)
 
     def _asked(self, question: Mapping[str, Any]) -> bytes:
         url = f"{self._file.url.rstrip('/')}/chat/completions"
@@ -182,19 +207,23 @@ def _as_url(picture: Picture) -> str:
     return "data:image/png;base64," + base64.b64encode(png_bytes(picture)).decode()
 
 
-def open_chat(path: Path, changes: Mapping[str, Any], *, sampled: bool = False) -> WaypointPolicy:
+def open_agent(path: Path, changes: Mapping[str, Any], *, sampled: bool = False) -> WaypointPolicy:
     """Return the policy of a model, by the JSON file that describes it.
 
     Raises:
-        DataFileError: The file cannot be read.
+        DataFileError: The file, or that of a model, cannot be read.
         ConfigError: A key or a value is wrong.
     """
     if sampled:
-        raise ConfigError("--sample: a model behind an endpoint is asked as its file says")
+        raise ConfigError("--sample: a model is asked as its file says")
     content = read_json(path, _LARGEST)
     if not isinstance(content, dict):
         raise DataFileError(f"{path}: not a JSON object")
     try:
+        if len(LOCAL & content.keys()) == 1:
+            from eyas.benchmark.policies.local_model import local_agent
+
+            return local_agent(content, changes, path)
         file = validated(ChatFile, content)
     except ConfigError as error:
         raise ConfigError(f"{path}: {error}") from None

@@ -78,7 +78,7 @@ PERSON = "person"  # What `Policy.told` names where people fly
 FLIGHTS = ".flights"  # Ending of files with the flights of people
 FILES = {
     ".onnx": f"{_ROOM}.onnx:load_onnx",
-    ".json": f"{_ROOM}.chat_agent:open_chat",
+    ".json": f"{_ROOM}.chat_agent:open_agent",
     ".zip": f"{_ROOM}.sb3:Sb3Policy",
     ".pt": f"{_ROOM}.torch_file:TorchPolicy",
     ".pth": f"{_ROOM}.torch_file:TorchPolicy",

@@ -18,11 +18,13 @@ from eyas.engine.core.own_code import running
 from eyas.engine.policies.policy import Decision, Failure, PolicyInput, Start, env_config
 from eyas.engine.policies.steering import PERIOD, pixel_offset
 from eyas.engine.settings.env import ActionKind, EnvConfig, ObservationPart
+from eyas.engine.task.packet_rows import FLOWN_STATE
 from eyas.lanes import exact
 
 Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
+_IMAGE, _SENSORS = ObservationPart.IMAGE.value, ObservationPart.SENSORS.value
 _AHEAD = 0.25  # How far ahead on its way a drone aims [s]
 _MOST = 200  # Largest number of points in an answer
 _FURTHEST = 1e4  # Largest distance and speed in an answer [m, m/s]
@@ -101,6 +103,9 @@ class Look(NamedTuple):
     pictures: Picture  # The last K, the newest last, shape (K, H, W, 3); before the first, black
     words: str  # The instruction, if `begin` takes `words`; empty where the protocol has none
     time: float  # Since the start of the flight [s]
+    state: Floats
+    """Position [m], velocity [m/s] and orientation (w, x, y, z) by the sensors, world frame, shape
+    (10,): `observation.state` of exports in LeRobot's format."""
 
 
 class _Flight:
@@ -176,7 +181,7 @@ class WaypointPolicy:
         width, height = getattr(example, "size", USUAL["size"])
         fixed = {
             "actions": ActionKind.VELOCITY,
-            "observation": {"parts": [ObservationPart.IMAGE], "width": width, "height": height,
+            "observation": {"parts": [_IMAGE, _SENSORS], "width": width, "height": height,
                             "layout": "hwc", "colours": "rgb", "frames": 1},
         }  # fmt: skip
         self.env: EnvConfig = env_config({"action_repeat": 4}, {**changes, **fixed})
@@ -201,8 +206,9 @@ class WaypointPolicy:
 
     def act(self, sight: PolicyInput) -> Decision:
         """Ask those whose time it is, and fly on."""
-        pictures = sight.observation
-        assert not isinstance(pictures, dict), "one part, the picture"
+        seen = sight.observation
+        assert isinstance(seen, dict), "two parts"
+        pictures, states = seen[_IMAGE], seen[_SENSORS][:, FLOWN_STATE]
         actions = np.zeros((len(self._flights), 4))
         failed: dict[int, Failure] = {}
         asked: list[tuple[int, float]] = []
@@ -220,7 +226,8 @@ class WaypointPolicy:
                 flight.asks_at = max(flight.asks_at + 1.0 / flight.agent.rate, now[row])
                 flight.pictures.append(np.array(pictures[row]))
                 asked.append((row, now[row]))
-        for (row, when), answer in zip(asked, self._answers(asked), strict=True):
+        answers = self._answers([(*each, states[each[0]]) for each in asked])
+        for (row, when), answer in zip(asked, answers, strict=True):
             if isinstance(answer, Failure):
                 failed[row] = answer
             elif answer[0] is not None:
@@ -231,7 +238,7 @@ class WaypointPolicy:
         return Decision(actions, failed)
 
     def _answers(
-        self, asked: Sequence[tuple[int, float]]
+        self, asked: Sequence[tuple[int, float, Floats]]
     ) -> list[tuple[Way | None, float] | Failure]:
         """Return the answer of each agent with its latency [s], or how it failed."""
         if self._threads == 1 or len(asked) < 2:
@@ -239,7 +246,7 @@ class WaypointPolicy:
         with ThreadPoolExecutor(min(self._threads, len(asked))) as pool:
             return list(pool.map(lambda each: self._answer(*each), asked))
 
-    def _answer(self, row: int, when: float) -> tuple[Way | None, float] | Failure:
+    def _answer(self, row: int, when: float, state: Floats) -> tuple[Way | None, float] | Failure:
         flight = self._flights[row]
         agent = flight.agent
         shape = (agent.pictures, *self._size, 3)
@@ -247,7 +254,7 @@ class WaypointPolicy:
         pictures[agent.pictures - len(flight.pictures) :] = np.stack(flight.pictures)
         begun = time.perf_counter()
         try:
-            answer = agent.plan(Look(pictures, flight.words, when))
+            answer = agent.plan(Look(pictures, flight.words, when, state))
             taken = time.perf_counter() - begun
             way = way_of(answer, agent.step, self._size)
         except KeyboardInterrupt:

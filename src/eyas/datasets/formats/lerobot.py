@@ -28,7 +28,9 @@ CAMERA = "observation.images.camera"
 _CHUNK = 1000  # Files in a folder
 _LOOKED_AT = 16  # Pictures of an episode by which the statistics of its colours are estimated
 
-_FEATURES = {"observation.state": STATE_NAMES, "observation.environment_state": TRUTH_NAMES}
+_FEATURES = {"observation.state": STATE_NAMES, "teacher.truth": TRUTH_NAMES}
+"""LeRobot gives a policy whatever is called `observation`, and so not what only a teacher knows."""
+
 _ACTION = "action"
 _COUNTERS = ("timestamp", "frame_index", "episode_index", "index", "task_index")
 
@@ -59,7 +61,7 @@ class LeRobot(Format):
         motion = motion_of(episode)
         arrays: dict[str, Any] = {
             "observation.state": motion.states,
-            "observation.environment_state": motion.truth,
+            "teacher.truth": motion.truth,
             _ACTION: motion.actions,
             "next.reward": np.nan_to_num(motion.rewards)[:, None],
             "next.done": np.array([[label["done"]] for label in episode.labels]),

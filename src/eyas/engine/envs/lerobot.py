@@ -15,18 +15,23 @@ from eyas.engine.core.errors import ConfigError
 from eyas.engine.envs.choice import EnvChoices, Source
 from eyas.engine.envs.vector_env import EyasVectorEnv, Stepped
 from eyas.engine.settings.env import ObservationPart
+from eyas.engine.task.packet_rows import FLOWN_STATE
 
+_IMAGE, _SENSORS = ObservationPart.IMAGE.value, ObservationPart.SENSORS.value
 _NAMES = {
-    ObservationPart.IMAGE.value: "pixels",
-    ObservationPart.SENSORS.value: "agent_pos",
+    _IMAGE: "pixels",
+    _SENSORS: "agent_pos",
     ObservationPart.PRIVILEGED.value: "environment_state",
 }
+_CAMERA = "camera"  # LeRobot calls its pictures `observation.images.camera`, as `eyas export` does
 SUCCESS = 0.5  # Share of an episode's full length in view from which it counts as a success
 
 
 class LeRobotVectorEnv(gymnasium.vector.VectorWrapper[Any, Any, Any, Any, Any]):
-    """N environments with LeRobot's names: `pixels` (H, W, 3), `agent_pos` (the sensors), and
-    `environment_state` if `env.observation.parts` has `privileged`.
+    """N environments with LeRobot's names: `pixels`, whose `camera` has shape (H, W, 3);
+    `agent_pos`, position [m], velocity [m/s] and orientation by the sensors, world frame, shape
+    (10,), which exports call `observation.state`; and `environment_state` if
+    `env.observation.parts` has `privileged`.
 
     `info["is_success"]` tells whether an episode was rewarded for at least half of its full length;
     it is False while it goes on.
@@ -44,7 +49,7 @@ class LeRobotVectorEnv(gymnasium.vector.VectorWrapper[Any, Any, Any, Any, Any]):
                 "env.observation.parts: not allowed: at least two of image, sensors, privileged"
             )
         self.single_observation_space = gymnasium.spaces.Dict(
-            {_NAMES[name]: space for name, space in single.items()}
+            {_NAMES[name]: _space(name, space) for name, space in single.items()}
         )
         self.observation_space = gymnasium.vector.utils.batch_space(
             self.single_observation_space, self.num_envs
@@ -111,4 +116,20 @@ def make_lerobot_env(
 
 
 def _renamed(observations: Mapping[str, Any]) -> Any:  # noqa: ANN401  # observations
-    return {_NAMES[name]: array for name, array in observations.items()}
+    found: dict[str, Any] = {}
+    for name, array in observations.items():
+        if name == _SENSORS:
+            array = array[:, FLOWN_STATE]
+        found[_NAMES[name]] = {_CAMERA: array} if name == _IMAGE else array
+    return found
+
+
+def _space(name: str, space: gymnasium.Space[Any]) -> gymnasium.Space[Any]:
+    """Return the space of one part of `_renamed`."""
+    if name == _IMAGE:
+        return gymnasium.spaces.Dict({_CAMERA: space})
+    if name != _SENSORS:
+        return space
+    assert isinstance(space, gymnasium.spaces.Box)
+    low, high = space.low[FLOWN_STATE], space.high[FLOWN_STATE]
+    return gymnasium.spaces.Box(low, high, dtype=space.dtype.type)

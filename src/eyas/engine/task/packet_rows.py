@@ -36,6 +36,13 @@ _DONE = first_column(BASIC_COLUMNS, "done")
 
 SENSOR_COLUMNS = slice(_POSITION, _REWARD)  # Columns of the basic packet that the sensors measure
 SENSOR_COUNT = _REWARD - _POSITION
+FLOWN_STATE = [
+    first + part - _POSITION
+    for first, parts in ((_POSITION, 3), (_VELOCITY, 3), (_ORIENTATION, 4))
+    for part in range(parts)
+]
+"""Those of them that are the state of data sets for robots: position [m], velocity [m/s] and
+orientation (w, x, y, z), world frame; their order is that of `eyas.datasets.motion.STATE_NAMES`."""
 
 _WIDTH = first_column(REWARD_COLUMNS, "camera_width")
 _HEIGHT = first_column(REWARD_COLUMNS, "camera_height")
