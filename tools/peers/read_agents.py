@@ -43,6 +43,8 @@ def learned(recording: Path, out: Path, steps: int) -> Path:
         "policy.use_vae": "false",
         "policy.chunk_size": 5,
         "policy.n_action_steps": 2,
+        "policy.optimizer_lr": 1e-4,
+        "policy.optimizer_lr_backbone": 1e-4,
         "steps": steps,
         "batch_size": 16,
         "num_workers": 0,
