@@ -11,6 +11,8 @@ from eyas.engine.terminal.options import (
     MapName,
     Overrides,
     Preset,
+    Rerun,
+    RerunAt,
     Seed,
     Trust,
     Weather,
@@ -49,6 +51,8 @@ def demo(
         float | None,
         typer.Option("--seconds", min=0.1, help="Stop after this time, with --headless."),
     ] = None,
+    rerun: Rerun = False,
+    rerun_at: RerunAt = None,
     record_for: Annotated[
         str | None,
         typer.Option(
@@ -74,7 +78,8 @@ def demo(
         raise ConfigError("--seconds: only with --headless")
     if record_for is not None:
         others = {"--config": config, "--preset": preset, "--set": set_, "--policy": policy}
-        for name, value in {**others, "--headless": headless}.items():
+        others |= {"--headless": headless, "--rerun": rerun, "--rerun-at": rerun_at}
+        for name, value in others.items():
             if value:
                 raise ConfigError(f"{name}: not together with --record-for: the protocol decides")
         plan = _to_record(record_for, out, map_name, weather, seed, episodes)
@@ -89,14 +94,16 @@ def demo(
 
         settings = of_a_run(settings)
     from eyas.demo import run as demo  # after all checks
+    from eyas.engine.recordings.rerun import live_view
 
     listening = None if headless else demo.listen(host, port)
-    session = demo.session_of(settings, policy)
-    if listening is None:
-        demo.run_headless(session, seconds or 10.0, typer.echo)
-    else:
-        stage = demo.free_flight(session)
-        demo.run_browser(stage, host, listening, browser=browser, say=typer.echo)
+    with live_view(wanted=rerun, at=rerun_at) as live:
+        session = demo.session_of(settings, policy, live)
+        if listening is None:
+            demo.run_headless(session, seconds or 10.0, typer.echo)
+        else:
+            stage = demo.free_flight(session)
+            demo.run_browser(stage, host, listening, browser=browser, say=typer.echo)
 
 
 def _to_record(

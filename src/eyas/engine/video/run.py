@@ -19,6 +19,7 @@ from eyas.engine.core.files import atomic_path
 from eyas.engine.core.folder_lock import folder_lock
 from eyas.engine.exports.registry import chosen_writers
 from eyas.engine.exports.writer import Summary, total
+from eyas.engine.recordings.rerun import LiveView
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.dialect import originals_named, spoken
 from eyas.engine.settings.video import VideoConfig
@@ -48,6 +49,7 @@ def run(
     resume: bool = False,
     quiet: bool = False,
     workers: int = 1,
+    live: LiveView | None = None,
 ) -> None:
     """Record episodes into `folder`, in the formats of `video.writers`.
 
@@ -62,6 +64,7 @@ def run(
         resume: Whether an existing recording is continued.
         quiet: Whether nothing is printed.
         workers: Number of processes.
+        live: Shows the frames that this process draws.
 
     Raises:
         EyasError: Something cannot be built, read or written, or another process records into
@@ -87,7 +90,7 @@ def run(
             shares = [Share(number, workers) for number in range(1, workers)]
             calls = [(_record_share, (config, folder, share)) for share in shares]
             helpers = Helpers(calls, max(1, thread_count() // workers))
-            _record(sim, flown, mover, recording, helpers, quiet=quiet)
+            _record(sim, flown, mover, recording, helpers, quiet=quiet, live=live)
     write_formats(config.video.writers, folder, quiet=quiet)
 
 
@@ -152,8 +155,9 @@ def _record(
     helpers: Helpers[RecordedShare],
     *,
     quiet: bool,
+    live: LiveView | None,
 ) -> None:
-    recorder = Recorder(sim, config, folder, Share(0, 1 + helpers.count))
+    recorder = Recorder(sim, config, folder, Share(0, 1 + helpers.count), live)
     progress = RecordingProgress(quiet=quiet)
 
     def show(share: float, frames: int) -> None:
