@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from eyas.engine.core.errors import ConfigError
+from eyas.engine.terminal.ending import print_ending
 from eyas.engine.terminal.options import (
     ConfigFile,
     MapName,
@@ -134,7 +135,10 @@ def _record(plan: "EvaluationPlan", host: str, port: int, *, browser: bool) -> N
     listening = demo.listen(host, port)
     demo.run_browser(ReferenceStage(plan), host, listening, browser=browser, say=typer.echo)
     folder = Path(plan.policy).parent
-    typer.echo(f"{folder}: {plan.count} flights; 'eyas leaderboard pack {folder}' makes an entry")
+    print_ending(
+        f"{plan.count} flights in {folder}",
+        ("make an entry for a leaderboard", ("eyas", "leaderboard", "pack", folder)),
+    )
 
 
 def replay(
@@ -154,6 +158,8 @@ def replay(
     from eyas.engine.settings.config import EyasConfig
 
     film = flown(read_link(link, Offer.of(EyasConfig())), seconds, out)
-    typer.echo(f"{film.pictures} pictures of {SIZE[0]} x {SIZE[1]}, digest {film.digest}")
-    if out is not None:
-        typer.echo(f"{out}: 'eyas open {out}' shows it")
+    said = f"{film.pictures} pictures of {SIZE[0]} x {SIZE[1]}, digest {film.digest}"
+    if out is None:
+        print_ending(said, ("record it", ("eyas", "replay", link, "--out", "FOLDER")))
+    else:
+        print_ending(f"{said}, in {out}", ("see it", ("eyas", "open", out)))

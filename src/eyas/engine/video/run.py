@@ -29,6 +29,7 @@ from eyas.engine.sim.worlds import together
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.task.config import DoneConfig
 from eyas.engine.task.step_line import EpisodeLines, step_line
+from eyas.engine.terminal.ending import print_ending
 from eyas.engine.terminal.helpers import Helpers
 from eyas.engine.video.action import Mover, check_flight, mover_of
 from eyas.engine.video.folder import VideoFolder, check_folder, open_folder
@@ -391,17 +392,16 @@ def print_report(
     console = Console()
     console.print(table)
     frames = total(summary for episodes in recorder.episodes for _, summary in episodes).frames
+    for note in missed(every, video):
+        console.print(note, highlight=False, markup=False, soft_wrap=True)
     line = f"{frames} frames in {folder.path} ({recorder.drawn} drawn now, {rate:.0f} a second)"
-    for text in (line, *missed(every, video), *_to_open(folder)):
-        console.print(text, highlight=False, markup=False, soft_wrap=True)
+    print_ending(line, *_next(folder.path))
 
 
-def _to_open(folder: VideoFolder) -> Iterator[str]:
-    """Yield what a user may open next: a film, or a picture."""
-    for pattern in ("*/*/episode.webp", "*/*/episode.mp4", "*/*/*.jpeg", "*/*/*.png"):
-        for file in sorted(folder.path.glob(pattern))[:1]:
-            yield f"to see it, open {file}"
-            return
+def _next(folder: Path) -> Iterator[tuple[str, tuple[str | Path, ...]]]:
+    """Yield what a user may do next, if there is a film or a picture."""
+    if any(any(folder.glob(f"*/*/*.{kind}")) for kind in ("webp", "mp4", "jpeg", "png")):
+        yield "see it", ("eyas", "open", folder)
 
 
 def _means(whole: Summary) -> tuple[str, str]:
