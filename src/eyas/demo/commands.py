@@ -78,8 +78,10 @@ def demo(
     if seconds is not None and not headless:
         raise ConfigError("--seconds: only with --headless")
     if record_for is not None:
-        others = {"--config": config, "--preset": preset, "--set": set_, "--policy": policy}
-        others |= {"--headless": headless, "--rerun": rerun, "--rerun-at": rerun_at}
+        others = {
+            **{"--config": config, "--preset": preset, "--set": set_, "--policy": policy},
+            **{"--headless": headless, "--rerun": rerun, "--rerun-at": rerun_at},
+        }
         for name, value in others.items():
             if value:
                 raise ConfigError(f"{name}: not together with --record-for: the protocol decides")
