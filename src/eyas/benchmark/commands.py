@@ -344,7 +344,7 @@ def reproduce(
         Path, to_write("Folder for their evaluations; continued if interrupted.")
     ] = Path("runs/reproduce"),
     row: Annotated[
-        str | None, typer.Option("--row", help="Only the row with this in its label.")
+        str | None, typer.Option("--row", help="Only rows with these words: 'fast downtown'.")
     ] = None,
     share: Annotated[
         float, typer.Option("--share", help="Part of the episodes to fly, for example 0.05.")
