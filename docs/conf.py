@@ -81,8 +81,8 @@ def complete(app: Sphinx, page: str, source: list[str]) -> None:
     text = re.sub(r"\]\((?:\.\./)+((?:art/)?README\.md)", rf"]({REPOSITORY}/blob/main/\1", text)
     for name, made in site_reference.MADE.items():
         marker = f"<!-- site: {name} -->"
-        if marker in text:
-            text = text.replace(marker, made())
+        if marker in text:  # with what readers of the file see in its place
+            text = text.partition(marker)[0] + made()
     if page in BELOW:
         below = BELOW[page].removeprefix(f"{page.rpartition('/')[0]}/")
         text += f"\n\n```{{toctree}}\n:hidden:\n:glob:\n\n{below}\n```\n"

@@ -9,7 +9,7 @@ from eyas.benchmark.plan.plan import EvaluationPlan, check
 from eyas.benchmark.policies.shipped import shipped_names
 from eyas.benchmark.report.reproduce import run as reproduce
 from eyas.benchmark.report.reproduce import tables
-from eyas.benchmark.report.reproduce.run import made, markdown, run
+from eyas.benchmark.report.reproduce.run import _rows_of, made, markdown, run
 from eyas.benchmark.report.reproduce.tables import (
     TABLES,
     Expected,
@@ -102,6 +102,21 @@ def test_a_row_or_a_part_of_the_episodes_is_flown_and_compared(small, tmp_path, 
     assert "means of the documents lie in the intervals" in capsys.readouterr().out
     with pytest.raises(UnknownNameError, match="--row"):
         run(("small",), tmp_path, row="nothing")
+
+
+@pytest.mark.parametrize(
+    ("table", "asked", "labels"),
+    [
+        ("standard", "fast downtown", ["`fast`, downtown by day"]),
+        ("targets", "eyas, citystreet", []),
+        ("targets", "eyas-flown late", ["`eyas-flown`, citystreet, 40 ms late"]),
+        ("unseen", "eyas", ["`eyas`"]),
+        ("evade", "hov", ["`hover`"]),
+        ("evade", "`", ["`hover`", "`sighted`", "`constant-velocity`", "`eyas`"]),
+    ],
+)
+def test_rows_are_named_by_words_of_their_labels(table, asked, labels):
+    assert [row.label for row in _rows_of(TABLES[table], asked)] == labels
 
 
 @pytest.mark.slow

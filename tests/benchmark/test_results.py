@@ -16,11 +16,13 @@ from eyas.benchmark.records.result import FEW_SEEDS, NO_INTERVALS, load_run, tab
 from eyas.benchmark.report import films as evaluation_films
 from eyas.benchmark.report.films import chosen_flights
 from eyas.benchmark.report.leaderboard import page as leaderboard
-from eyas.benchmark.statistics.comparison import differences, text_of
+from eyas.benchmark.statistics.comparison import differences, verdict
 from eyas.benchmark.statistics.table_rows import rows_of, thirds
 from eyas.cli.app import app
 from eyas.engine.core.errors import EyasError
 from eyas.engine.core.identity.build import this_build
+
+NAMES = ("hover", "follow")
 
 
 @pytest.fixture(scope="module")
@@ -134,7 +136,9 @@ def test_what_another_build_has_flown_is_compared_and_continued_only_if_asked(fo
 
 def test_the_command_prints_both_ways(folder):
     names = [str(folder / "hover"), str(folder / "follow")]
-    assert "B - A" in CliRunner().invoke(app, ["compare", *names]).output
+    said = CliRunner().invoke(app, ["compare", *names]).output.splitlines()
+    assert said[0].startswith("cr: follow is better (")
+    assert any("B - A" in line for line in said)
     found = json.loads(CliRunner().invoke(app, ["compare", *names, "--json"]).output)
     assert found[0]["mean"] > 200.0
 
@@ -288,7 +292,7 @@ def test_too_few_seeds_have_no_interval_and_one_line_says_so(folder):
     assert FEW_SEEDS in table(rows_of(records(folder, "hover"), PAPER), "paper")
     found = differences(records(folder, "hover")[:4], records(folder, "follow")[:4], PAPER)
     assert found[0].interval is None
-    assert "too few independent seeds" in text_of(found, PAPER.rank)
+    assert all("too few independent seeds" in line for line in verdict(found, NAMES, PAPER.rank))
 
 
 def test_sets_of_seeds_are_pooled_and_each_has_a_row(folder):
@@ -344,7 +348,8 @@ def test_a_protocols_own_figures_are_compared_where_both_have_them(folder):
     found = differences(first, second, PROTOCOLS.get("recover"))
     whole = next(each for each in found if (each.group, each.figure) == ("all", "recovered"))
     assert (whole.n, whole.first, whole.second) == (7, pytest.approx(1 / 7), 1.0)
-    assert "recovered: the two differ" in text_of(found, PROTOCOLS.get("recover").rank)
+    first, _ = verdict(found, ("hover", "mine"), PROTOCOLS.get("recover").rank)
+    assert first == "recovered: mine is better (1.000 of mine, 0.143 of hover, in 7 episodes)"
 
 
 def test_a_flight_without_a_loss_has_found_its_target(folder):
@@ -358,20 +363,18 @@ def test_a_flight_without_a_loss_has_found_its_target(folder):
 
 def test_the_comparison_says_how_many_episodes_would_tell(folder):
     hover, follow = records(folder, "hover"), records(folder, "follow")
-    said = text_of(differences(hover, follow, PAPER), PAPER.rank)
-    assert "cr: the two differ; about 10 paired episodes would tell" in said
-    assert "you have 8" in said
+    first, _ = verdict(differences(hover, follow, PAPER), NAMES, PAPER.rank)
+    assert first.startswith("cr: follow is better (")
+    first, _ = verdict(differences(follow, hover, PAPER), NAMES[::-1], PAPER.rank)
+    assert first.startswith("cr: follow is better (")
     changed = [
         each.model_copy(update={"tsr": each.tsr + (0.1, -0.09)[place % 2]})
         for place, each in enumerate(hover)
     ]
-    line = next(
-        line
-        for line in text_of(differences(hover, changed, PAPER), PAPER.rank).splitlines()
-        if line.startswith("tsr: ")
-    )
-    assert line.startswith("tsr: the two are not told apart; about 3,200 paired")
-    assert "cr: no difference in 8" in text_of(differences(hover, changed, PAPER), PAPER.rank)
+    rank, tsr = verdict(differences(hover, changed, PAPER), NAMES, PAPER.rank)
+    assert tsr.startswith("tsr: it is open which is better (")
+    assert "; about 3,200 would tell" in tsr
+    assert rank == "cr: no difference between hover and follow in 8 episodes"
 
 
 def test_what_has_no_part_in_an_evaluation_are_rooms_of_the_build():

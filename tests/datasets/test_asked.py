@@ -5,6 +5,7 @@ import pytest
 from eyas.datasets.asked import Asked
 from eyas.datasets.plan import planned
 from eyas.datasets.recipe import read_recipe
+from eyas.engine.core.config import updated
 from eyas.engine.core.errors import EyasError
 from eyas.engine.targets.config import TargetName
 from eyas.engine.traffic.library import CANONICAL_MIX
@@ -29,9 +30,25 @@ def test_buses_in_rain_at_dusk_are_followed_where_recorded_traffic_has_them():
         assert part.config.video.channels <= 4  # as many buses as there are
     assert recipe.formats == ("coco", "yolo")
     assert sum(split.share for split in recipe.splits.given.values()) == pytest.approx(1.0)
-    assert recipe.about.endswith(
-        "Of this, only: classes bus; weathers rain, dusk; formats yolo, coco."
+    assert recipe.about == (
+        "Made by the recipe eyas-detect, but with classes bus; weathers rain, dusk; formats yolo, "
+        "coco. No map is left for val, which has other episodes of the maps of train."
     )
+
+
+def test_where_no_map_is_left_val_has_other_episodes_at_other_times():
+    recipe = Asked(2000, classes=("bus",)).of(DETECT)
+    parts = planned(recipe)
+    own = {
+        split: [part for part in parts if part.split == split and part.config.world.map == name]
+        for split, name in (("train", "citystreet"), ("val", "citystreet"), ("test", "downtown"))
+    }
+    assert all(own.values())
+    latest = max(part.config.video.start_time for part in own["train"])
+    assert latest < min(part.config.video.start_time for part in own["val"])
+    assert not Asked(2000).of(DETECT).shared_places
+    with pytest.raises(EyasError, match="no place may be in two splits"):
+        planned(updated(recipe, {"shared_places": False}))
 
 
 def test_people_and_vehicles_take_turns():

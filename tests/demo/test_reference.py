@@ -153,7 +153,7 @@ def test_an_entry_of_people_can_be_packed(flown):
     assert people.attempts == 4
     assert 0.0 < people.picture_ms < 5000.0
     assert 0.0 < people.slowest <= 1.0
-    assert "4 episodes of 'paper'" in pack(folder)
+    assert "4 episodes of 'paper'" in pack(folder).about
 
 
 def test_attempts_that_are_left_out_or_chosen_contradict_the_records(flown, tmp_path, caplog):

@@ -100,7 +100,7 @@ READERS = {
     "engine.recordings.export:_identity": "export",
     "engine.recordings.export:_read": "export",
     "datasets.formats.mcap:_messages": "export",
-    "datasets.formats.rerun:Rerun._log": "export",
+    "datasets.formats.rerun:Rerun.add": "export",
     "datasets.formats.shards:WebDataset.add": "export",
     "datasets.layout:read_plan": "dataset plan",
     "engine.recordings.recording:RecordedEpisode.frame_count": "labels",

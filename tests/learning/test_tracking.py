@@ -277,8 +277,10 @@ def test_eyas_train_teaches_a_tracker_from_nothing(tmp_path, monkeypatch):
     assert said[0] == "3 batches of 32 flights, 512 pictures in lessons"
     assert "traffic 1 of 1: " in result.stdout
     assert "round 2: flights 3 of 3: " in result.stdout
-    assert said[-1] == str(out / "policy.onnx")
-    assert open_policy(said[-1], {}).env.observation.width == SIZE[1]
+    policy = out / "policy.onnx"
+    assert said[-3] == f"{policy} (its curve in {out / 'curve.csv'})"
+    assert said[-2] == f"to measure it: eyas evaluate --policy {policy}"
+    assert open_policy(str(policy), {}).env.observation.width == SIZE[1]
     assert open_policy(str(out / "policy-flown.onnx"), {}).settings == FLOWN
 
 

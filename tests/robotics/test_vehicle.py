@@ -267,6 +267,28 @@ def test_a_target_out_of_sight_is_told_as_an_error(bench):
     assert bench.last("CAMERA_TRACKING_IMAGE_STATUS").tracking_status == 2
 
 
+def refusal(bench, x, y):
+    """Return the answer to a point to track, and the text beside it."""
+    answer = bench.command("CAMERA_TRACK_POINT", x, y, 0.0, component=100)
+    return answer, *(m.text for m in bench.answers if m.get_type() == "STATUSTEXT")
+
+
+def test_why_a_point_is_not_tracked_is_said(bench):
+    bench.fly_up()
+    bench.stay_over_target()
+    outside = "Not tracked: outside the picture: 0 to 1 in x, y"
+    assert refusal(bench, 1.5, 0.5) == (DENIED, outside)
+    assert refusal(bench, 0.0, 0.0) == (FAILED, "Not tracked: no vehicle or person there")
+    bench.command("DO_GIMBAL_MANAGER_PITCHYAW", -2, 0, NAN, NAN, 0, 0, 0)
+    bench.fly(2.0)
+    x, y, z = bench.simulation.snapshot.targets.position[0]
+    pose = np.array([[x - 70.0, y, z + 3.0, 0.0]])  # others stand between
+    bench.simulation.start_at(np.arange(1), pose, np.full(1, math.radians(2.0)))
+    bench.fly(0.02)
+    assert bench.command("CAMERA_TRACK_RECTANGLE", 0.3, 0.3, 0.7, 0.7, component=100) == FAILED
+    assert "Not tracked: what is there is hidden" in [getattr(m, "text", "") for m in bench.answers]
+
+
 def test_the_camera_zooms(bench):
     before = float(bench.simulation.snapshot.cameras.field_of_view[0])
     assert bench.command("SET_CAMERA_ZOOM", 2, 100, component=100) == ACCEPTED

@@ -236,7 +236,13 @@ def compare(
 ) -> None:
     """Compare two evaluations in the episodes that both have flown: how much B differs from A."""
     from eyas.benchmark.records.result import load_run
-    from eyas.benchmark.statistics.comparison import differences, refuse_incomparable, text_of
+    from eyas.benchmark.statistics.comparison import (
+        differences,
+        refuse_incomparable,
+        text_of,
+        verdict,
+    )
+    from eyas.engine.terminal.ending import print_ending
 
     (stamp_a, records_a), (stamp_b, records_b) = (
         load_run(folder, trust=trust) for folder in (first, second)
@@ -246,9 +252,16 @@ def compare(
     if json_:
         typer.echo(json.dumps([each._asdict() for each in found], indent=1))
         return
+    names = stamp_a.plan.policy, stamp_b.plan.policy
+    if names[0] == names[1]:
+        names = str(first), str(second)
+    for line in verdict(found, names, stamp_a.plan.rules.rank):
+        typer.echo(line)
     for name, stamp in (("A", stamp_a), ("B", stamp_b)):
         typer.echo(f"{name}: {stamp.plan.command} (Eyas {stamp.version}, build {stamp.build.id})")
-    typer.echo(text_of(found, stamp_a.plan.rules.rank))
+    print_ending(
+        text_of(found), ("see their flights on a page", ("eyas", "leaderboard", "page", "FOLDER"))
+    )
 
 
 leaderboard = typer.Typer(help="Rank evaluations, and fly those of others again.")
@@ -275,8 +288,10 @@ def pack(
 ) -> None:
     """Make one file of an evaluation, to be sent in as an entry."""
     from eyas.benchmark.report.leaderboard.pack import pack
+    from eyas.engine.terminal.ending import print_ending
 
-    typer.echo(pack(run, out))
+    file, made = pack(run, out)
+    print_ending(made, ("check it as others will", ("eyas", "leaderboard", "verify", file)))
 
 
 @leaderboard.command()
@@ -329,7 +344,7 @@ def reproduce(
         Path, to_write("Folder for their evaluations; continued if interrupted.")
     ] = Path("runs/reproduce"),
     row: Annotated[
-        str | None, typer.Option("--row", help="Only the row with this in its label.")
+        str | None, typer.Option("--row", help="Only rows with these words: 'fast downtown'.")
     ] = None,
     share: Annotated[
         float, typer.Option("--share", help="Part of the episodes to fly, for example 0.05.")

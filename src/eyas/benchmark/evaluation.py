@@ -36,6 +36,7 @@ from eyas.engine.core.errors import ConfigError, OutputError
 from eyas.engine.core.files import refusals, write_atomic
 from eyas.engine.core.folder_lock import folder_lock
 from eyas.engine.core.machine import describe_machine
+from eyas.engine.terminal.ending import print_ending
 
 _LOG = logging.getLogger("eyas")
 CROISSANT = "croissant.json"  # What the episodes are, for machines
@@ -91,6 +92,12 @@ def run(
         )
         print(table(rows, plan.protocol))
     _tell_failures(flown)
+    if not quiet:
+        print_ending(
+            f"{len(flown)} episodes in {out} ({EPISODES}, {RESULT})",
+            ("compare it with another", ("eyas", "compare", "FOLDER", out)),
+            ("make an entry for a leaderboard", ("eyas", "leaderboard", "pack", out)),
+        )
     return flown
 
 
@@ -157,7 +164,7 @@ def one_shard(runner: Runner, number: int, count: int) -> Runner:
 
 def _say_share(out: Path, flown: int, count: int, *, quiet: bool) -> None:
     if not quiet:
-        print(
+        print_ending(
             f"{flown} of {count} episodes in {out}; the same command with --join for each folder, "
             "without --shard, makes figures of all"
         )

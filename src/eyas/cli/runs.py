@@ -22,6 +22,8 @@ from eyas.engine.terminal.options import (
     Overwrite,
     Preset,
     Quiet,
+    Rerun,
+    RerunAt,
     Resume,
     Seed,
     Trust,
@@ -88,6 +90,8 @@ def video(
             help="Processes; by default half the cores from four on, else one.",
         ),
     ] = None,
+    rerun: Rerun = False,
+    rerun_at: RerunAt = None,
     resume: Resume = False,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
@@ -117,12 +121,24 @@ def video(
     if settings.mode is not Mode.VIDEO and not quiet:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records anyway"
         say(f"note: {said}")
+    from eyas.engine.recordings.rerun import live_view
     from eyas.engine.video import (
         run as video,  # compiled kernels: slow to import, so only after all checks
     )
 
-    workers = workers or video.default_workers(settings)
-    video.run(settings, out, overwrite=overwrite, resume=resume, quiet=quiet, workers=workers)
+    with live_view(wanted=rerun, at=rerun_at) as live:
+        if live is not None and (workers or 1) > 1:
+            raise ConfigError("--workers: with --rerun, which shows all frames, one process flies")
+        workers = workers or (1 if live is not None else video.default_workers(settings))
+        video.run(
+            settings,
+            out,
+            overwrite=overwrite,
+            resume=resume,
+            quiet=quiet,
+            workers=workers,
+            live=live,
+        )
 
 
 def serve(

@@ -14,6 +14,7 @@ from eyas.engine.traffic.fleet import vehicle_types
 from eyas.engine.traffic.library import CANONICAL_MIX, is_shipped
 from eyas.engine.world.maps import MAPS
 
+SHARED = "No map is left for val, which has other episodes of the maps of train."
 _PEOPLE = ("person", "people", "pedestrian")
 
 
@@ -52,11 +53,16 @@ class Asked(NamedTuple):
                 maps = _with_recordings(maps, vehicles)
                 changes["trackers"] = min(recipe.trackers, _most(vehicles))
         if maps != _only(recipe, ()):
+            if maps.get("train") and not maps.get("val", True):
+                maps["val"] = maps["train"]
+                changes["shared_places"] = True
             changes["splits"] = _shared(recipe.splits, maps)
         told = {name: value for name, value in self._asdict().items() if value and name != "frames"}
         if told:  # the words of the recipe describe what it was
             words = "; ".join(f"{name} {', '.join(value)}" for name, value in told.items())
-            changes["about"] = f"{recipe.about} Of this, only: {words}.".strip()
+            changes["about"] = f"Made by the recipe {recipe.name}, but with {words}."
+            if "shared_places" in changes:
+                changes["about"] += f" {SHARED}"
         return updated(recipe, changes | {"factors": factors})
 
 

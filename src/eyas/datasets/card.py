@@ -60,7 +60,9 @@ def card(plan: Plan, statistics: Mapping[str, Any], notices: Mapping[str, str]) 
         f"from the recipe in `{RECIPE_FILE}`; the same build makes the same bytes again.",
         "## Splits",
         _splits_table(statistics["splits"]),
-        "No seed and no place (map) is in two splits.",
+        "No seed is in two splits, but places (maps) are: other episodes of their traffic."
+        if recipe.shared_places
+        else "No seed and no place (map) is in two splits.",
         "## What is in a frame",
         _files(plan),
         "## Composition",

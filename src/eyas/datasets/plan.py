@@ -1,11 +1,13 @@
 """The plan of a data set: the recordings that a recipe asks for, its *parts*, each with its split.
 
-Nothing leaks: the parts of a split have seeds of their own, and maps of their own.
+Nothing leaks: the parts of a split have seeds of their own, and maps of their own unless the recipe
+lets splits share them.
 """
 
 import hashlib
 import math
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -57,11 +59,16 @@ def planned(recipe: Recipe) -> list[DatasetPart]:
     """
     _check_names(recipe)
     _check_places(recipe)
+    sizes = {
+        split: _sizes(episodes, recipe.trackers, recipe.episodes)
+        for split, episodes in _episodes(recipe).items()
+    }
+    counts = Counter(name for split in sizes for name in _maps(recipe, split, len(sizes[split])))
+    before = Counter[str]()  # Parts of each map until now
     parts: list[DatasetPart] = []
-    for split, episodes in _episodes(recipe).items():
-        sizes = _sizes(episodes, recipe.trackers, recipe.episodes)
+    for split, own in sizes.items():
         first = parts[-1].number + 1 if parts else 0
-        parts += _parts(recipe, split, first, sizes)
+        parts += _parts(recipe, split, first, own, before, counts)
     return parts
 
 
@@ -136,13 +143,13 @@ def _check_places(recipe: Recipe) -> None:
     """Refuse a place in two splits."""
     seen: dict[object, tuple[str, str]] = {}
     for name, split in recipe.splits.given.items():
-        for place in split.maps:
+        for place in () if recipe.shared_places else split.maps:
             other, where = seen.setdefault(_roads_of(place), (place, name))
             if where != name:
                 told = "is" if other == place else f"has the roads of {other!r}, which is"
                 raise ConfigError(
                     f"splits.{name}.maps: {place!r} {told} in the split '{where}', too; no place "
-                    "may be in two splits"
+                    "may be in two splits, unless shared_places is true"
                 )
 
 
@@ -199,27 +206,39 @@ def _sizes(episodes: int, trackers: int, each: int) -> list[tuple[int, int]]:
 
 
 def _parts(
-    recipe: Recipe, split: str, first: int, sizes: Sequence[tuple[int, int]]
+    recipe: Recipe,
+    split: str,
+    first: int,
+    sizes: Sequence[tuple[int, int]],
+    before: Counter[str],
+    counts: Mapping[str, int],
 ) -> list[DatasetPart]:
-    """Return the parts of a split, the first of which has the number `first`."""
-    count, own = len(sizes), recipe.splits.given[split]
-    lists = {"map": own.maps, **_lists(recipe)}
-    columns = {
+    """Return the parts of a split, the first of which has the number `first`.
+
+    Args:
+        before: How many parts of each map come before; those of the split are added.
+        counts: How many parts of each map there are in all splits.
+    """
+    count = len(sizes)
+    columns = {"map": _maps(recipe, split, count)} | {
         name: _spread(values, count, f"{recipe.seed} {split} {name}")
-        for name, values in lists.items()
+        for name, values in _lists(recipe).items()
     }
     rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-    before: dict[str, int] = {}
     parts = []
     for at, (chosen, size) in enumerate(zip(rows, sizes, strict=True)):
-        turn = before.get(chosen["map"], 0)
-        before[chosen["map"]] = turn + 1
-        share = turn / columns["map"].count(chosen["map"])
+        share = before[chosen["map"]] / counts[chosen["map"]]
+        before[chosen["map"]] += 1
         for variant, changes in (recipe.variants or {"": {}}).items():
             config = _settings(recipe, chosen, changes, first + at)
             config = _timed(config, recipe, size, share)
             parts.append(_part(recipe, split, first + at, variant, config, chosen))
     return parts
+
+
+def _maps(recipe: Recipe, split: str, count: int) -> list[str]:
+    """Return the maps of the parts of a split."""
+    return _spread(recipe.splits.given[split].maps, count, f"{recipe.seed} {split} map")
 
 
 def _part(

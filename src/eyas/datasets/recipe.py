@@ -58,7 +58,8 @@ class Split(Config):
     share: Annotated[float, Field(gt=0, le=1)]
     """Share of all frames."""
     maps: Annotated[Names, NAMES_CODE]
-    """Its places. Maps on the same roads are one place, and no place is in two splits."""
+    """Its places. Maps on the same roads are one place, and no place is in two splits unless the
+    recipe says `shared_places`."""
 
 
 class Splits(Config):
@@ -114,6 +115,9 @@ class Recipe(Config):
     episodes: Count = 1
     """Episodes of each tracker in a part, one after the other."""
     splits: Splits
+    shared_places: bool = False
+    """Whether a place may be in several splits, which then have different episodes of its traffic,
+    one split after the other in time."""
     weathers: Annotated[Names, NAMES_CODE] = ("day",)
     hours: Annotated[tuple[float | None, ...], Several] = (None,)
     """Times of day, 0 to 24; null: the weather's own sun or moon."""

@@ -6,11 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from eyas.engine.core.errors import ConfigError
+from eyas.engine.terminal.ending import print_ending
 from eyas.engine.terminal.options import (
     ConfigFile,
     MapName,
     Overrides,
     Preset,
+    Rerun,
+    RerunAt,
     Seed,
     Trust,
     Weather,
@@ -49,6 +52,8 @@ def demo(
         float | None,
         typer.Option("--seconds", min=0.1, help="Stop after this time, with --headless."),
     ] = None,
+    rerun: Rerun = False,
+    rerun_at: RerunAt = None,
     record_for: Annotated[
         str | None,
         typer.Option(
@@ -73,8 +78,11 @@ def demo(
     if seconds is not None and not headless:
         raise ConfigError("--seconds: only with --headless")
     if record_for is not None:
-        others = {"--config": config, "--preset": preset, "--set": set_, "--policy": policy}
-        for name, value in {**others, "--headless": headless}.items():
+        others = {
+            **{"--config": config, "--preset": preset, "--set": set_, "--policy": policy},
+            **{"--headless": headless, "--rerun": rerun, "--rerun-at": rerun_at},
+        }
+        for name, value in others.items():
             if value:
                 raise ConfigError(f"{name}: not together with --record-for: the protocol decides")
         plan = _to_record(record_for, out, map_name, weather, seed, episodes)
@@ -89,14 +97,16 @@ def demo(
 
         settings = of_a_run(settings)
     from eyas.demo import run as demo  # after all checks
+    from eyas.engine.recordings.rerun import live_view
 
     listening = None if headless else demo.listen(host, port)
-    session = demo.session_of(settings, policy)
-    if listening is None:
-        demo.run_headless(session, seconds or 10.0, typer.echo)
-    else:
-        stage = demo.free_flight(session)
-        demo.run_browser(stage, host, listening, browser=browser, say=typer.echo)
+    with live_view(wanted=rerun, at=rerun_at) as live:
+        session = demo.session_of(settings, policy, live)
+        if listening is None:
+            demo.run_headless(session, seconds or 10.0, typer.echo)
+        else:
+            stage = demo.free_flight(session)
+            demo.run_browser(stage, host, listening, browser=browser, say=typer.echo)
 
 
 def _to_record(
@@ -127,7 +137,10 @@ def _record(plan: "EvaluationPlan", host: str, port: int, *, browser: bool) -> N
     listening = demo.listen(host, port)
     demo.run_browser(ReferenceStage(plan), host, listening, browser=browser, say=typer.echo)
     folder = Path(plan.policy).parent
-    typer.echo(f"{folder}: {plan.count} flights; 'eyas leaderboard pack {folder}' makes an entry")
+    print_ending(
+        f"{plan.count} flights in {folder}",
+        ("make an entry for a leaderboard", ("eyas", "leaderboard", "pack", folder)),
+    )
 
 
 def replay(
@@ -147,6 +160,8 @@ def replay(
     from eyas.engine.settings.config import EyasConfig
 
     film = flown(read_link(link, Offer.of(EyasConfig())), seconds, out)
-    typer.echo(f"{film.pictures} pictures of {SIZE[0]} x {SIZE[1]}, digest {film.digest}")
-    if out is not None:
-        typer.echo(f"{out}: 'eyas open {out}' shows it")
+    said = f"{film.pictures} pictures of {SIZE[0]} x {SIZE[1]}, digest {film.digest}"
+    if out is None:
+        print_ending(said, ("record it", ("eyas", "replay", link, "--out", "FOLDER")))
+    else:
+        print_ending(f"{said}, in {out}", ("see it", ("eyas", "open", out)))

@@ -1,7 +1,8 @@
 """Films by a link of some 40 characters, `citystreet/day/fast/4711/1f3a9c2e`, to the byte.
 
-The link has the map, the weather, the policy, the seed of the episode, and eight digits of the
-build; further choices of the menus follow as `/hour=19`. A map or policy of the user's own is
+The link has the map, the weather, the policy, the seed of the episode, and a fingerprint of the
+program, which is not the build's id; further choices of the menus follow as `/hour=19`. A map or
+policy of the user's own is
 `name~digest` or `~digest`: its files must be the same. The film is one minute of the drone's
 camera, from the start of the episode, and its digest that of the bytes of all its pictures.
 """
@@ -41,7 +42,7 @@ DIGITS = 8  # Of each digest
 
 _FORM = re.compile(
     rf"(?P<map>[\w~-]+)/(?P<weather>[\w-]+)/(?P<policy>[\w~-]+)/(?P<seed>[0-9]{{1,19}})"
-    rf"/(?P<build>[0-9a-f]{{{DIGITS}}})(?P<more>(?:/(?:target|tracker|light|hour|vehicles|people)=[\w.-]+)*)"
+    rf"/(?P<fingerprint>[0-9a-f]{{{DIGITS}}})(?P<more>(?:/(?:target|tracker|light|hour|vehicles|people)=[\w.-]+)*)"
 )
 _NUMBER = re.compile(r"\d{1,3}(\.\d{1,6})?", re.ASCII)
 _EXAMPLE = "citystreet/day/fast/4711/1f3a9c2e"
@@ -65,7 +66,7 @@ def read_link(text: str, offer: Offer) -> FilmLink:
     """Return the film of a link, also of one behind `#` in an address.
 
     Raises:
-        ConfigError: It is not a link, is of another build, or names what is not here: one line.
+        ConfigError: It is not a link, is of another program, or names what is not here: one line.
     """
     code = unquote(text[: LONGEST_LINK + 1].rpartition("#")[2].strip())
     found = _FORM.fullmatch(code) if len(text) <= LONGEST_LINK else None
@@ -81,10 +82,10 @@ def read_link(text: str, offer: Offer) -> FilmLink:
                 f"known: {names:.400}"
             )
     policy = policies[found["policy"]]
-    if found["build"] != (now := build_of(policy)):
+    if found["fingerprint"] != (now := fingerprint_of(policy)):
         raise ConfigError(
-            f"link: of the build {found['build']}; this is {now}, whose pictures may differ: "
-            "fly it with the version of Eyas that made it"
+            f"link: its program has the fingerprint {found['fingerprint']}, this one {now}, so "
+            "pictures may differ: fly it with the version of Eyas that made it"
         )
     more = dict(pair.split("=") for pair in found["more"].split("/")[1:])
     values = {name: _number(text) for name, text in more.items()}
@@ -111,7 +112,7 @@ def link_of(world: WorldChoice, policy: str, seed: int, offer: Offer) -> FilmLin
     chosen = chosen_in(world, offer)
     place = {name: chosen.pop(name) for name in ("map", "weather")}
     usual = chosen_in(choice_of(_usual(), WorldMessage(**place), offer), offer)
-    head = f"{tags['map']}/{place['weather']}/{tags['policy']}/{seed}/{build_of(policy)}"
+    head = f"{tags['map']}/{place['weather']}/{tags['policy']}/{seed}/{fingerprint_of(policy)}"
     missed: list[list[str]] = []
     # What looks as usual in the menus may still be said in the settings.
     for names in ([name for name in chosen if chosen[name] != usual[name]], [*chosen]):
@@ -124,8 +125,10 @@ def link_of(world: WorldChoice, policy: str, seed: int, offer: Offer) -> FilmLin
     raise ConfigError(f"link: it cannot hold the settings {', '.join(fewest)} of this world")
 
 
-def build_of(policy: str) -> str:
-    """Return digits that differ where the pictures of a film may."""
+def fingerprint_of(policy: str) -> str:
+    """Return digits that differ where the pictures of a film may: by the build, the code of films
+    and, for networks, the library that runs them.
+    """
     code = [code_of(one, libraries=False) for one in (Film, WorldChoice, PolicyController)]
     known = f"{this_build().id} {code}"
     if policy not in POLICIES.built_in:  # a network

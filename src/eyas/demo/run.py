@@ -1,9 +1,7 @@
 """Runs the demo in the browser, or as lines in a terminal."""
 
 import asyncio
-import os
 import socket
-import sys
 import time
 import webbrowser
 from collections.abc import Callable, Coroutine
@@ -11,16 +9,19 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from eyas.demo.live import LiveDemo
 from eyas.demo.offer import Offer
 from eyas.demo.orders import open_with_a_chase
 from eyas.demo.session import Session
 from eyas.engine.core.errors import OutputError
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.task.step_line import step_line
+from eyas.engine.terminal.screen import has_screen
 from eyas.lanes.interrupts import let_in, shielded
 
 if TYPE_CHECKING:
     from eyas.demo.stages import Stage
+    from eyas.engine.recordings.rerun import LiveView
 
 _LOOK = 0.05  # Time from one look for signals to the next [s]
 
@@ -59,16 +60,21 @@ RECORDINGS = Path("runs/demo")
 LINES = 10  # Lines per second in a terminal
 
 
-def session_of(config: EyasConfig, policy: str | None = None) -> Session:
+def session_of(
+    config: EyasConfig, policy: str | None = None, live: "LiveView | None" = None
+) -> Session:
     """Return what is flown in a demo.
 
     Args:
         policy: A policy that may fly, beside those that come with Eyas.
+        live: Shows what the drone's camera sees.
 
     Raises:
         EyasError: The world cannot be built.
     """
-    return Session(config, partial(Offer.of, config, policy), RECORDINGS)
+    session = Session(config, partial(Offer.of, config, policy), RECORDINGS)
+    session.live = None if live is None else LiveDemo(live)
+    return session
 
 
 def listen(host: str, port: int) -> socket.socket:
@@ -103,17 +109,10 @@ def run_browser(
 
     def begun(address: str) -> None:
         say(address)
-        if browser and _has_screen():
+        if browser and has_screen():  # else one that runs in the terminal would start
             webbrowser.open(address)
 
     run_until_signal(DemoServer(stage, host, listening).run(begun))
-
-
-def _has_screen() -> bool:
-    """Return whether a browser could show up: else one that runs in the terminal would start."""
-    if sys.platform != "linux":
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 def free_flight(session: Session) -> "Stage":

@@ -12,6 +12,7 @@ from eyas.demo.film import SIZE as FILM_SIZE
 from eyas.demo.film import Film, FilmLink
 from eyas.demo.flight import DemoFlight
 from eyas.demo.frame import DemoFrame
+from eyas.demo.live import LiveDemo
 from eyas.demo.offer import Offer
 from eyas.demo.readings import readings, traffic
 from eyas.demo.recording import DemoRecording
@@ -106,6 +107,7 @@ class Session:
         self.size, self.clock = AdaptiveSize(), Clock(time.monotonic())
         self.overlay = True
         self.recording: DemoRecording | None = None
+        self.live: LiveDemo | None = None
         self.film: Film | None = None
         self.duel: Duel | None = None
         self.duel_later: str | None = None
@@ -153,6 +155,8 @@ class Session:
             self._held = {}
         while steps > 0 and not self.sides_change and not (self.film and self.film.over):
             steps -= self._advance_some(steps, now)
+        if self.live is not None:
+            self.live.show(self.flight, now)
 
     def _advance_some(self, steps: int, now: float) -> int:
         """Fly some of the steps that are due; return how many."""

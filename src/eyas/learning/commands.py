@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from eyas.engine.terminal.ending import print_ending
 from eyas.engine.terminal.options import (
     ConfigFile,
     MapName,
@@ -83,7 +84,11 @@ def train(
         settings, out or _default_folder(resume=resume), resume=resume, quiet=quiet, ray=ray
     )
     if not quiet:
-        typer.echo(f"{policy}")
+        print_ending(
+            f"{policy} (its curve in {policy.with_name('curve.csv')})",
+            ("measure it", ("eyas", "evaluate", "--policy", policy)),
+            ("see it fly", ("eyas", "demo", "--policy", policy)),
+        )
 
 
 def _default_folder(*, resume: bool) -> Path:

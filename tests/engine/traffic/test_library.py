@@ -148,7 +148,7 @@ def test_one_line_says_what_has_changed(
     slow = BUSES.model_copy(update={"max_speed": 9.0})
     find_recording(grid, slow, duration=5.0, shipped=shipped)
     (line,) = caplog.messages
-    assert ", once, for traffic.max_speed is 9.0 (shipped: 20.0); kept in " in line
+    assert ", for traffic.max_speed is 9.0 (shipped: 20.0); kept for the same settings in " in line
 
 
 WITHOUT_SUMO = """

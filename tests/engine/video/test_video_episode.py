@@ -1,6 +1,5 @@
 import shutil
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -205,12 +204,9 @@ def test_what_one_writer_cannot_close_the_others_still_do(tmp_path):
     assert list((tmp_path / "episode0").iterdir()) == []
 
 
-def test_a_film_is_named_to_open_next_or_else_a_picture(tmp_path):
-    folder, named = SimpleNamespace(path=tmp_path), []
-    for name in ("labels.jsonl", "000000.png", "episode.mp4"):
-        for drone in ("DRONE1", "DRONE0"):
-            (tmp_path / drone / "episode0").mkdir(parents=True, exist_ok=True)
-            (tmp_path / drone / "episode0" / name).touch()
-        named += [*run._to_open(folder)]
+@pytest.mark.parametrize(("name", "shows"), [("labels.jsonl", 0), ("0.png", 1), ("a.mp4", 1)])
+def test_a_recording_with_something_to_see_says_how(tmp_path, name, shows):
     episode = tmp_path / "DRONE0" / "episode0"
-    assert named == [f"to see it, open {episode / file}" for file in ("000000.png", "episode.mp4")]
+    episode.mkdir(parents=True)
+    (episode / name).touch()
+    assert [*run._next(tmp_path)] == [("see it", ("eyas", "open", tmp_path))] * shows

@@ -97,15 +97,19 @@ def _part(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 
 
 def _tell_others(path: Path, trained: Mapping[str, Any]) -> None:
-    """Name the settings that a model was trained with and that the protocol decides."""
+    """Name the settings that a model was trained with and that only --set gives it in a protocol.
+
+    Of the start that is its velocity: where flights begin is the protocol's matter.
+    """
     others = [
         f"{group}.{name}={shown(value)}"
         for group in ELSEWHERE
         for name, value in _part(trained, group).items()
+        if (group, name) == ("start", "velocity") or group != "start"
     ]
     if others:
         _LOG.warning(
-            "%s: was trained with %s; flown with those of the protocol, unless --set changes them",
+            "%s: was trained with %s; flown with those of the protocol unless --set names them",
             path,
             ", ".join(others),
         )

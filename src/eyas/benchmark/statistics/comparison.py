@@ -1,6 +1,6 @@
 """Two policies in the same episodes: the difference of their figures."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -117,26 +117,37 @@ def _difference(
     )
 
 
-def told_apart(found: Sequence[Difference], figure: str) -> str:
-    """Return in words whether the two differ in a figure, and how many episodes would tell."""
-    whole = next(each for each in found if (each.group, each.figure) == ("all", figure))
+def verdict(
+    found: Sequence[Difference],
+    names: tuple[str, str],  # Of the first and the second
+    rank: str,  # The protocol's first figure; the other is TSR. Of both, larger is better
+) -> Iterator[str]:
+    """Yield a line for each figure: which of the two is better, or what it takes to tell."""
+    whole = {each.figure: each for each in found if each.group == "all"}
+    for figure in dict.fromkeys((rank, "tsr")):
+        if figure in whole:
+            yield f"{figure}: {_verdict(whole[figure], names)}"
+
+
+def _verdict(whole: Difference, names: tuple[str, str]) -> str:
+    first, second = names
+    figures = (
+        f"{whole.second:.3f} of {second}, {whole.first:.3f} of {first}, in {whole.n:,} episodes"
+    )
     if whole.interval is None:
-        return f"{figure}: too few independent seeds to tell the two apart"
+        return f"too few independent seeds to say which is better ({figures})"
     if whole.mean == 0.0:
-        return f"{figure}: no difference in {whole.n} paired episodes"
-    apart = not whole.interval.low <= 0.0 <= whole.interval.high
-    verdict = "differ" if apart else "are not told apart"
+        return f"no difference between {first} and {second} in {whole.n:,} episodes"
+    if not whole.interval.low <= 0.0 <= whole.interval.high:
+        return f"{second if whole.mean > 0.0 else first} is better ({figures})"
     return (
-        f"{figure}: the two {verdict}; about {whole.needed:,} paired episodes would tell a "
-        f"difference of this size in {POWER:.0%} of cases; you have {whole.n:,}"
+        f"it is open which is better ({figures}); about {whole.needed:,} would tell a difference "
+        f"of this size in {POWER:.0%} of cases"
     )
 
 
-def text_of(
-    found: Sequence[Difference],
-    rank: str,  # The protocol's first figure; the other is TSR
-) -> str:
-    """Return a table as text, and below it whether the two are told apart."""
+def text_of(found: Sequence[Difference]) -> str:
+    """Return a table as text."""
     lines = [("", "n", "figure", "A", "B", "B - A", "95 %", "B larger")]
     lines += [
         (
@@ -156,8 +167,6 @@ def text_of(
     text = ["  ".join(row).rstrip() for row in rows]
     if any(each.interval is None for each in found):
         text.append(NO_INTERVALS)
-    known = {each.figure for each in found if each.group == "all"}
-    text += [told_apart(found, name) for name in dict.fromkeys((rank, "tsr")) if name in known]
     return "\n".join(text)
 
 

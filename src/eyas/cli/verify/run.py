@@ -17,6 +17,7 @@ from eyas.engine.core.errors import DataFileError, UnknownNameError
 from eyas.engine.core.installed import installed_version
 from eyas.engine.core.machine import describe_machine
 from eyas.engine.core.scratch import scratch
+from eyas.engine.terminal.ending import print_ending
 from eyas.engine.terminal.progress import frames_bar
 from eyas.lanes import thread_count
 from eyas.lanes.trusted import FOLDER_VARIABLE
@@ -181,10 +182,16 @@ def _print(verdict: Verdict, facts: dict[str, str], count: int) -> None:
     for case, names in verdict.different.items():
         print(f"differs: {case}: {', '.join(names)}")
     other = sum(map(len, verdict.different.values()))
-    if other:
-        print(f"{other} of {verdict.same + other} hashes, in {len(verdict.different)} of {count} "
-              "cases, are not those of the manifest")  # fmt: skip
-    else:
-        print(f"all {verdict.same} hashes, in {count} cases, are those of the manifest")
     for name, fact in facts.items():
         print(f"{name}: {fact}")
+    if other:
+        print_ending(
+            f"{other} of {verdict.same + other} hashes, in {len(verdict.different)} of {count} "
+            "cases, are not those of the manifest",
+            ("report it, with all of this", ("eyas", "verify", "--json")),
+        )
+        return
+    print_ending(
+        f"all {verdict.same} hashes, in {count} cases, are those of the manifest",
+        ("fly a row of the documents' tables again", ("eyas", "reproduce")),
+    )

@@ -42,16 +42,20 @@ def of_a_run(config: EyasConfig, seed: int | None = None) -> EyasConfig:
     """
     if config.original is None or config.traffic.seed is not None:
         return config
+    traffic = config.traffic
+    recorded = traffic.recording is None and traffic.source is Source.RECORDED
+    varied = traffic.update_routes and recorded
     if "seed" in config.model_fields_set:
         seed = config.seed
     elif seed is None:
         seed = fresh_seed()
+        anew = ", and SUMO records its traffic, anew at each start" * (varied and _sumo())
         _LOG.info(
-            "fixed_seed is false: the seed of this run is %d; --seed %d repeats it", seed, seed
+            "fixed_seed is false: the seed of this run is %d%s; --seed %d repeats it",
+            *(seed, anew, seed),
         )
     changes: dict[str, object] = {"seed": seed}
-    traffic = config.traffic
-    if traffic.update_routes and traffic.recording is None and traffic.source is Source.RECORDED:
+    if varied:
         changes |= {"traffic": {"seed": seed % TEST_SEEDS}} if _sumo() else _later(config, seed)
     return updated(config, changes)
 

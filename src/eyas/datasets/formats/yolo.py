@@ -58,11 +58,13 @@ class _Yolo(Format):
         """Return pairs of numbers for each object [pixels], each of shape (K, 2)."""
 
     def finish(self, episodes: Sequence[Exported]) -> None:
-        """Write `data.yaml`; Ultralytics wants `train` and `val`, be it the same."""
+        """Write `data.yaml`; Ultralytics wants `train` and `val`."""
         splits = list(dict.fromkeys(episode.split for episode in episodes))
         folders = {"train": splits[0], "val": splits[0]} | {split: split for split in splits}
         # Without "path": Ultralytics takes the folder of the file; "." would be the current one.
         rows = [f"{split}: images/{folder}" for split, folder in folders.items()]
+        if len(splits) == 1:
+            rows.insert(0, "# One split is all there is, so `val` measures what training has seen.")
         names = [f"  {number}: {name}" for name, number in _NUMBERS.items()]
         self.job.write("data.yaml", lines([*rows, "names:", *names]))
 

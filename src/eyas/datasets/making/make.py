@@ -15,8 +15,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-
 from eyas.datasets.card import card
 from eyas.datasets.croissant import croissant
 from eyas.datasets.layout import MAKING_FILE, RECIPE_FILE, Plan, read_plan, write_plan
@@ -39,6 +37,7 @@ from eyas.engine.core.folder_lock import LOCK, folder_lock
 from eyas.engine.exports.checksums import SEALED, damaged_files, seal_folder
 from eyas.engine.recordings.export import EXPORTS, damaged_export, exports_folder, finish_export
 from eyas.engine.recordings.recording import DATASET_FILE, Recording, load_part
+from eyas.engine.terminal.ending import print_ending
 from eyas.engine.terminal.progress import frames_bar
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE
@@ -333,9 +332,16 @@ def report(plan: Plan, place: str, *, quiet: bool) -> None:
     """Print what was made at a place."""
     if quiet:
         return
-    told = f"{place}: {plan.recipe.name}"
+    frames = sum(_known(Path(place), part).frames for part in plan.parts())
     if plan.shard is not None:
-        told += f", shard {plan.shard[0]} of {plan.shard[1]}"
-    else:
-        told += "; overview.html there shows it"
-    Console().print(told, highlight=False, markup=False, soft_wrap=True)
+        print_ending(
+            f"{frames:,} frames in {place}: {plan.recipe.name}, shard {plan.shard[0]} of "
+            f"{plan.shard[1]}",
+            ("join all shards", ("eyas", "dataset", "merge", "SHARDS", "--out", "FOLDER")),
+        )
+        return
+    exports = ", ".join(plan.recipe.formats)
+    print_ending(
+        f"{frames:,} frames in {place}: {plan.recipe.name}" + (f" as {exports}" if exports else ""),
+        ("see it", ("eyas", "open", place)),
+    )

@@ -17,6 +17,7 @@ from eyas.engine.envs.vector_env import EyasVectorEnv
 from eyas.engine.settings.env import ObservationPart
 
 try:
+    from stable_baselines3.common.monitor import Monitor
     from stable_baselines3.common.vec_env import VecEnv
 except ImportError as error:
     raise MissingExtraError("eyas.engine.envs.sb3", "train") from error
@@ -138,8 +139,9 @@ class EyasVecEnv(VecEnv):  # type: ignore[misc]  # no types where it is not inst
         return [method(*method_args, **method_kwargs) for method in methods]
 
     def env_is_wrapped(self, wrapper_class: Any, indices: Indices = None) -> list[bool]:  # noqa: ANN401  # a class
-        """Return False for each: no wrapper is between."""
-        return [False for _ in self._get_indices(indices)]
+        """Return whether each does what a wrapper does: `Monitor`'s part is done, see above."""
+        monitored = issubclass(wrapper_class, Monitor)
+        return [monitored for _ in self._get_indices(indices)]
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
         """Return the cameras' pictures."""

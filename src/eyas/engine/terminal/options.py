@@ -79,6 +79,15 @@ Resume = Annotated[bool, typer.Option("--resume", help="Continue what was interr
 Overwrite = Annotated[
     bool, typer.Option("--overwrite", help="Replace what an earlier run has written there.")
 ]
+Rerun = Annotated[
+    bool, typer.Option("--rerun", help="Show it in Rerun's viewer as it flies (extra exports).")
+]
+RerunAt = Annotated[
+    str | None,
+    typer.Option(
+        "--rerun-at", metavar="HOST:PORT", help="The same, in a viewer that listens there."
+    ),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 Workers = Annotated[
     int | None,

@@ -337,7 +337,7 @@ def _new(
     limit, path = cache_limit(), _cache_file(graph, wanted, duration, cover)
     version = sumo_version("new traffic, as no recording fits the settings,")
     _LOG.warning(
-        "recording %.0f s of traffic on '%s' with SUMO %s, once, %s; kept in %s",
+        "recording %.0f s of traffic on '%s' with SUMO %s, %s; kept for the same settings in %s",
         *(duration, graph.map_name, version, reason, path),
     )
     assert wanted.seed is not None

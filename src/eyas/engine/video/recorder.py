@@ -31,6 +31,7 @@ from eyas.engine.exports.capture import frame_of, moment_of
 from eyas.engine.exports.checksums import CHECKSUMS, GROWING, checksum_lines, read_checksums
 from eyas.engine.exports.frame import Frame, RecordedAction
 from eyas.engine.exports.writer import EndedEpisode, Episode, Scores, Summary, Writer, joined
+from eyas.engine.recordings.rerun import LiveView
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.video import VideoConfig
 from eyas.engine.sim.flights.shares import SMALL
@@ -263,14 +264,20 @@ class Recorder:
     """Shares of the drawn frames of each tracker, by the way they show its target."""
 
     def __init__(
-        self, sim: Simulation, config: EyasConfig, folder: VideoFolder, share: Share = _ALL
+        self,
+        sim: Simulation,
+        config: EyasConfig,
+        folder: VideoFolder,
+        share: Share = _ALL,
+        live: LiveView | None = None,  # Shows frames as they are recorded
     ) -> None:
         count = config.video.channels
-        self._sim, self._share = sim, share
+        self._sim, self._share, self._live = sim, share, live
         self._folder = folder
         self._threads = WriterThreads(count)
         self._checksums = Checksums(folder.path, folder.writers)
-        self._wanted = wanted = {output for writer in folder.writers for output in writer.wants}
+        wanted = {output for writer in folder.writers for output in writer.wants}
+        self._wanted = wanted = wanted | (live.wants if live is not None else set())
         self._besides = wanted & {"words", "parts", "clean", "cameras", "events", "traffic"}
         self._overlay = config.video.overlay and "rgb" in wanted
         pictures = wanted - self._besides - {"others"}
@@ -319,6 +326,8 @@ class Recorder:
             self.reached[tracker].add(frame)
             assert going.files is not None
             self._threads.submit(tracker, going.files.add, frame)
+            if self._live is not None:
+                self._live.show(frame, going.episode)
         self.drawn += len(drawn)
 
     def _begin(self, tracker: int) -> _OpenEpisode:

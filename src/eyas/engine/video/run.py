@@ -19,6 +19,7 @@ from eyas.engine.core.files import atomic_path
 from eyas.engine.core.folder_lock import folder_lock
 from eyas.engine.exports.registry import chosen_writers
 from eyas.engine.exports.writer import Summary, total
+from eyas.engine.recordings.rerun import LiveView
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.dialect import originals_named, spoken
 from eyas.engine.settings.video import VideoConfig
@@ -28,6 +29,7 @@ from eyas.engine.sim.worlds import together
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.task.config import DoneConfig
 from eyas.engine.task.step_line import EpisodeLines, step_line
+from eyas.engine.terminal.ending import print_ending
 from eyas.engine.terminal.helpers import Helpers
 from eyas.engine.video.action import Mover, check_flight, mover_of
 from eyas.engine.video.folder import VideoFolder, check_folder, open_folder
@@ -48,6 +50,7 @@ def run(
     resume: bool = False,
     quiet: bool = False,
     workers: int = 1,
+    live: LiveView | None = None,
 ) -> None:
     """Record episodes into `folder`, in the formats of `video.writers`.
 
@@ -62,6 +65,7 @@ def run(
         resume: Whether an existing recording is continued.
         quiet: Whether nothing is printed.
         workers: Number of processes.
+        live: Shows the frames that this process draws.
 
     Raises:
         EyasError: Something cannot be built, read or written, or another process records into
@@ -87,7 +91,7 @@ def run(
             shares = [Share(number, workers) for number in range(1, workers)]
             calls = [(_record_share, (config, folder, share)) for share in shares]
             helpers = Helpers(calls, max(1, thread_count() // workers))
-            _record(sim, flown, mover, recording, helpers, quiet=quiet)
+            _record(sim, flown, mover, recording, helpers, quiet=quiet, live=live)
     write_formats(config.video.writers, folder, quiet=quiet)
 
 
@@ -152,8 +156,9 @@ def _record(
     helpers: Helpers[RecordedShare],
     *,
     quiet: bool,
+    live: LiveView | None,
 ) -> None:
-    recorder = Recorder(sim, config, folder, Share(0, 1 + helpers.count))
+    recorder = Recorder(sim, config, folder, Share(0, 1 + helpers.count), live)
     progress = RecordingProgress(quiet=quiet)
 
     def show(share: float, frames: int) -> None:
@@ -387,17 +392,16 @@ def print_report(
     console = Console()
     console.print(table)
     frames = total(summary for episodes in recorder.episodes for _, summary in episodes).frames
+    for note in missed(every, video):
+        console.print(note, highlight=False, markup=False, soft_wrap=True)
     line = f"{frames} frames in {folder.path} ({recorder.drawn} drawn now, {rate:.0f} a second)"
-    for text in (line, *missed(every, video), *_to_open(folder)):
-        console.print(text, highlight=False, markup=False, soft_wrap=True)
+    print_ending(line, *_next(folder.path))
 
 
-def _to_open(folder: VideoFolder) -> Iterator[str]:
-    """Yield what a user may open next: a film, or a picture."""
-    for pattern in ("*/*/episode.webp", "*/*/episode.mp4", "*/*/*.jpeg", "*/*/*.png"):
-        for file in sorted(folder.path.glob(pattern))[:1]:
-            yield f"to see it, open {file}"
-            return
+def _next(folder: Path) -> Iterator[tuple[str, tuple[str | Path, ...]]]:
+    """Yield what a user may do next, if there is a film or a picture."""
+    if any(any(folder.glob(f"*/*/*.{kind}")) for kind in ("webp", "mp4", "jpeg", "png")):
+        yield "see it", ("eyas", "open", folder)
 
 
 def _means(whole: Summary) -> tuple[str, str]:

@@ -72,8 +72,8 @@ class Sights:
         self._simulation.view.draw(one, self._measured, DrawStage.RASTERISING)
         return seen_in(self._measured, 0)
 
-    def chosen(self, vehicle: int, box: tuple[float, float, float, float]) -> int | None:
-        """Return the actor that covers most of a box, or is nearest to it; None if there is none.
+    def chosen(self, vehicle: int, box: tuple[float, float, float, float]) -> int | str:
+        """Return the actor that covers most of a box, or is nearest to it; why not, if none is.
 
         Args:
             vehicle: Whose picture it is.
@@ -85,7 +85,7 @@ class Sights:
         actors = self._objects.object_id[0] - ACTOR_OBJECT
         rows, columns = np.nonzero((actors >= 0) & (actors < self._simulation.actors))
         if not len(rows):
-            return None
+            return self._hidden(vehicle, box) or "no vehicle or person in the picture"
         height, width = self._size
         across, down = columns + 0.5, rows + 0.5
         right, left = across - box[2] * width, box[0] * width - across
@@ -95,9 +95,25 @@ class Sights:
         away = np.sqrt(aside * aside + along * along)
         near = away <= max(float(away.min()), 0.5)
         if float(away.min()) > _CLICKED * width:
-            return None
+            return self._hidden(vehicle, box) or "no vehicle or person there"
         found, count = np.unique(actors[rows[near], columns[near]], return_counts=True)
         return int(found[int(count.argmax())])
+
+    def _hidden(self, vehicle: int, box: tuple[float, float, float, float]) -> str:
+        """Return that an actor in a box is hidden; nothing if none is there."""
+        height, width = self._size
+        measured = Picture.create(
+            *(1, height, width), rgb=False, depth=True, subject=True, actors=self._simulation.actors
+        )
+        self._simulation.view.draw(np.array([vehicle], np.int32), measured)
+        assert measured.actor_box is not None
+        assert measured.actor_pixels is not None
+        extents, pixels = measured.actor_box[0], measured.actor_pixels[0]
+        left, top, right, bottom = np.array(box) * (width, height, width, height)
+        there = (extents[:, 0] <= right) & (extents[:, 2] >= left)
+        there &= (extents[:, 1] <= bottom) & (extents[:, 3] >= top)
+        hidden = there & (pixels[:, 0] == 0) & (pixels[:, 1] > 0)
+        return "what is there is hidden" if hidden.any() else ""
 
 
 def seen_in(picture: Picture, view: int) -> Sighting | None:
@@ -129,7 +145,7 @@ class CameraComponent:
     Args:
         now: Returns the present instant.
         choose: Makes what is in a box of the picture (left, top, right, bottom, as shares of the
-            sides) the target; returns whether there is anything.
+            sides) the target; returns why not, if it cannot.
         subject: Returns the target.
     """
 
@@ -138,7 +154,7 @@ class CameraComponent:
         component: Component,
         lens: Lens,
         now: Callable[[], Instant],
-        choose: Callable[[tuple[float, float, float, float]], bool],
+        choose: Callable[[tuple[float, float, float, float]], str],
         subject: Callable[[], LockedSubject],
     ) -> None:
         self.tracks, self.zoom = False, 1.0
@@ -208,13 +224,20 @@ class CameraComponent:
 
     def _track(self, box: tuple[float, float, float, float], mode: int) -> Result:
         if not all(0.0 <= part <= 1.0 for part in box) or box[0] > box[2] or box[1] > box[3]:
-            return Result.DENIED
-        if not self._choose(box):
-            return Result.FAILED
+            return self._refused(Result.DENIED, "outside the picture: 0 to 1 in x, y")
+        if why := self._choose(box):
+            return self._refused(Result.FAILED, why)
         self.tracks, self._mode = True, mode
         for message in _STATUSES:
             self._component.begin_stream(message, _STATUS_RATE)
         return Result.ACCEPTED
+
+    def _refused(self, result: Result, why: str) -> Result:
+        """Return a result, after a text for the ground station that says why."""
+        warning = self._component.names.MAV_SEVERITY_WARNING
+        text = f"Not tracked: {why}".encode()[:50]  # a message has no more room
+        self._component.send("statustext", severity=warning, text=text)
+        return result
 
     def _stop(self, command: Command) -> Result:
         self.tracks, self._mode, self._seen = False, _NONE, None

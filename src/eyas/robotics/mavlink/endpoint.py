@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from eyas.engine.core.addresses import parsed_address
 from eyas.engine.core.errors import ConfigError, MissingExtraError, OutputError
 
 
@@ -104,20 +105,6 @@ _LARGEST = 65_535
 _MOST = 256  # Largest number of datagrams that are read at once
 _FORGET = 10.0  # Time after which one who has said nothing is no longer sent anything [s]
 _MOST_PEERS = 16
-
-Address = tuple[str, int]
-
-
-def parsed_address(text: str, path: str) -> Address:
-    """Return host and port of `HOST:PORT`.
-
-    Raises:
-        ConfigError: It is of another form; `path` names it.
-    """
-    found = re.fullmatch(r"\[?([^\[\]]*?)\]?:(\d{1,5})", text)
-    if found is None or not found[1] or not 1 <= int(found[2]) <= 65_535:
-        raise ConfigError(f"{path}: {text!r} is not of the form HOST:PORT, such as 127.0.0.1:5600")
-    return found[1], int(found[2])
 
 
 class Endpoint:

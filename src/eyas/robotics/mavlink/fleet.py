@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.core.addresses import parsed_address
 from eyas.engine.core.clock import PHYSICS_RATE, physics_steps
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.sim.serving import Face, Orders
@@ -21,7 +22,7 @@ from eyas.engine.task.config import Crash
 from eyas.lanes import exact
 from eyas.robotics.mavlink.camera import Lens, Sights, seen_in
 from eyas.robotics.mavlink.config import MavlinkConfig
-from eyas.robotics.mavlink.endpoint import Endpoint, parsed_address
+from eyas.robotics.mavlink.endpoint import Endpoint
 from eyas.robotics.mavlink.frames import Geodesy
 from eyas.robotics.mavlink.pilot import FEET, FlightMode, Landed
 from eyas.robotics.mavlink.readings import VehicleReadings

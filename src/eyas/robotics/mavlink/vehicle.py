@@ -125,13 +125,13 @@ class Vehicle:
         """Take where the target is in the newest picture."""
         self.camera.see(seen)
 
-    def _choose(self, box: tuple[float, float, float, float]) -> bool:
+    def _choose(self, box: tuple[float, float, float, float]) -> str:
         actor = self._sights.chosen(self._number, box)
-        if actor is None:
-            return False
+        if isinstance(actor, str):
+            return actor
         self._readings.simulation.follow(self._number, actor)
         self.camera.see(self._sights.seen(self._number))
-        return True
+        return ""
 
     def _subject(self) -> camera.LockedSubject:
         targets, at = self._readings.simulation.snapshot.targets, self._number

@@ -4,6 +4,7 @@ import logging
 import socket
 from contextlib import ExitStack
 
+from eyas.engine.core.addresses import parsed_address
 from eyas.engine.core.config import shown, updated
 from eyas.engine.core.errors import ConfigError, OutputError
 from eyas.engine.settings.config import EyasConfig
@@ -11,7 +12,7 @@ from eyas.engine.sim.serving import serve
 from eyas.engine.trackers.config import TrackerConfig, TrackerKind
 from eyas.engine.world.maps import MAPS
 from eyas.robotics.mavlink.config import MavlinkConfig
-from eyas.robotics.mavlink.endpoint import dialect, parsed_address
+from eyas.robotics.mavlink.endpoint import dialect
 
 
 def listening(text: str) -> socket.socket:

@@ -1,6 +1,7 @@
 """One file with all that a leaderboard needs of an evaluation, to be sent in."""
 
 import io
+import json
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -8,14 +9,15 @@ from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
 from eyas.benchmark.evaluation import TIMING
-from eyas.benchmark.policies.shipped import shipped_names
-from eyas.benchmark.policies.table import FILES, POLICIES
+from eyas.benchmark.policies.table import FILES
 from eyas.benchmark.records.result import EPISODES, RESULT, STAMP
 from eyas.benchmark.report.films import FOLDER, film
 from eyas.benchmark.report.leaderboard.submission import CARD, complete_run, read_card
-from eyas.engine.core.errors import ConfigError, DataFileError
+from eyas.benchmark.report.leaderboard.verify import holds_code
+from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited, write_atomic
 
 _LARGEST = 1 << 31  # Largest size of a file of an entry [bytes]
@@ -27,26 +29,33 @@ _DAMAGED = (ValueError, RuntimeError, OSError, EOFError, zipfile.BadZipFile, zli
 _MEDIAN = f"{FOLDER}/median.mp4"
 
 
-def pack(folder: Path, out: Path | None = None) -> str:
-    """Write the zip file of an entry; return a line about it.
+class Packed(NamedTuple):
+    """The file of an entry."""
+
+    file: Path
+    about: str  # A line on what it holds and lacks
+
+
+def pack(folder: Path, out: Path | None = None) -> Packed:
+    """Write the zip file of an entry.
 
     It holds the records, the card, the policy's file if it has one, and a film of the median flight
-    where PyAV is installed.
+    where PyAV is installed. A card that is missing is made, with the policy's name.
 
     Args:
-        folder: Folder of a finished evaluation with a `card.json`.
+        folder: Folder of a finished evaluation.
         out: The file; None: `<folder>.zip`.
 
     Raises:
-        EyasError: The evaluation is not finished, contradicts itself or has no card, or its policy
-            is not there.
+        EyasError: The evaluation is not finished or contradicts itself, its card is none, or its
+            policy is not there.
     """
     stamp, _, records = complete_run(folder)
-    if read_card(folder) is None:
-        raise ConfigError(
-            f'{folder / CARD}: missing: an entry says what it is, for example {{"name": "Kestrel"}}'
-        )
     plan, notes = stamp.plan, []
+    if read_card(folder) is None:
+        card = {"name": Path(plan.policy).stem}
+        write_atomic(folder / CARD, (json.dumps(card) + "\n").encode())
+        notes.append(f"{folder / CARD} made: add authors, link, trained_on and license to it")
     beside = folder / Path(plan.policy).name
     if beside.suffix in FILES and beside.is_file():
         plan = plan.model_copy(update={"policy": str(beside)})
@@ -56,8 +65,10 @@ def pack(folder: Path, out: Path | None = None) -> str:
     files = {name: folder / name for name in names}
     if Path(policy).suffix in FILES:
         files[Path(policy).name] = Path(policy)
-    elif policy not in POLICIES.built_in and policy not in shipped_names():
-        notes.append("without the code of its policy, which can't be flown again: send a file")
+        if holds_code(policy):
+            notes.append(f"'{Path(policy).name}' holds code: others verify it only by --trust")
+    elif holds_code(policy):
+        notes.append("its policy is code, which is not in it: nobody can verify it; send a file")
     if find_spec("av") is None:
         notes.append("without a film (extra video)")
     else:
@@ -70,7 +81,8 @@ def pack(folder: Path, out: Path | None = None) -> str:
             archive.writestr(zipfile.ZipInfo(name), read_limited(path, _LARGEST))
     target = out or folder.with_name(f"{folder.name}.zip")
     write_atomic(target, packed.getvalue())
-    return "; ".join([f"{target}: {len(records)} episodes of '{stamp.plan.protocol}'", *notes])
+    made = f"{len(records)} episodes of '{stamp.plan.protocol}' in {target}"
+    return Packed(target, "; ".join([made, *notes]))
 
 
 @contextmanager

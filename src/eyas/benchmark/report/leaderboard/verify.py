@@ -209,11 +209,17 @@ def _flyable(folder: Path, made: Stamp, entry: ResultEntry, *, trust: bool) -> E
     return plan
 
 
+def holds_code(policy: str) -> bool:
+    """Return whether a policy is code, or a file that may hold some, and flies only if trusted."""
+    known = policy in POLICIES.built_in or policy in shipped_names()
+    return not known and Path(policy).suffix not in _DATA
+
+
 def _policy_of(folder: Path, said: str, *, trust: bool) -> str:
     """Return what to open for a policy: its name, or its file in the folder or where it was."""
     if said in POLICIES.built_in or said in shipped_names():
         return said
-    if not trust and Path(said).suffix not in _DATA:
+    if not trust and holds_code(said):
         raise _UnverifiableError(
             f"its policy {said!r} is code, or a file that holds some: --trust runs it"
         )

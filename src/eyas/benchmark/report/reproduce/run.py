@@ -23,6 +23,7 @@ from eyas.engine.core.errors import ConfigError, UnknownNameError
 from eyas.engine.core.files import write_atomic
 from eyas.engine.core.identity.build import this_build
 
+_WORD = re.compile(r"[\w-]+")
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 
@@ -38,7 +39,7 @@ def run(
     are those of the documents.
 
     Args:
-        row: Label of the only row to fly, or a part of it; None: all.
+        row: The only rows to fly: words of their labels, or a part of one; None: all.
         share: Which part of the episodes, more than 0 and at most 1; of a part, it is told whether
             the documents' means lie in its intervals.
 
@@ -56,13 +57,20 @@ def _part_of(table: Table, row: str | None, share: float) -> Table:
     """Return a table with one row, or with fewer episodes; these are in folders of their own."""
     rows = table.rows
     if row is not None:
-        rows = tuple(each for each in rows if row in each.label)
+        rows = _rows_of(table, row)
         if not rows:
             labels = [each.label for each in table.rows]
             raise UnknownNameError("--row", row, labels)
     if share < 1.0:
         rows = tuple(each._replace(plan=_fewer(each.plan, share)) for each in rows)
     return table._replace(rows=rows)
+
+
+def _rows_of(table: Table, asked: str) -> tuple[Row, ...]:
+    """Return the rows whose labels have all of some words, or else a text."""
+    words = {*_WORD.findall(asked)}
+    named = tuple(row for row in table.rows if words and words <= {*_WORD.findall(row.label)})
+    return named or tuple(row for row in table.rows if asked in row.label)
 
 
 def _fewer(plan: EvaluationPlan, share: float) -> EvaluationPlan:

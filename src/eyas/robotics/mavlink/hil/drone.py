@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from eyas.engine.core.addresses import parsed_address
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.sim.serving import Face, Orders
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.draw import Picture
 from eyas.engine.trackers.driven import WEIGHT
 from eyas.robotics.mavlink.config import MavlinkConfig
-from eyas.robotics.mavlink.endpoint import parsed_address
 from eyas.robotics.mavlink.fleet import standing_places
 from eyas.robotics.mavlink.frames import Geodesy
 from eyas.robotics.mavlink.readings import Instant, VehicleReadings
