@@ -205,7 +205,7 @@ def check_plan(
         typer.echo(line)
     if wrong:
         raise typer.Exit(1)
-    typer.echo(f"{file}: a plan of a map; use it with --map {file}")
+    typer.echo(f"{file}: no faults found; use it with --map {file}")
 
 
 @app.command("export")

@@ -31,6 +31,7 @@ from eyas.engine.core.files import flushed, refusals, sum_of, write_atomic
 from eyas.engine.core.rng import stream
 from eyas.engine.envs.registration import register_map
 from eyas.engine.state.roads import RoadGraph, RoadNetwork
+from eyas.engine.terminal.counts import many
 from eyas.engine.terminal.progress import sumo_progress
 from eyas.engine.traffic.library import record_canonical
 from eyas.engine.traffic.net_file import (
@@ -98,9 +99,9 @@ class Report:
         """Return the report for people."""
         width, height = self.size
         made = [
-            f"{self.name}: {width:.0f} x {height:.0f} m, {self.lanes} lanes, {self.signals} "
-            f"traffic lights, {self.buildings} buildings, {self.trees} trees, "
-            f"in {self.seconds:.0f} s",
+            f"{self.name}: {width:.0f} x {height:.0f} m, {many(self.lanes, 'lane')}, "
+            f"{many(self.signals, 'traffic light')}, {many(self.buildings, 'building')}, "
+            f"{many(self.trees, 'tree')}, in {self.seconds:.0f} s",
             f"kept in {self.folder}; use it with --map {shlex.quote(self.known_as)}",
         ]
         for word, counted in (("guessed", self.guessed), ("odd tags", self.odd),
