@@ -116,9 +116,10 @@ def _map(path: Path) -> Brought:
     from eyas.maps.osm.driving_side import tagged_side, usual_side
     from eyas.maps.osm.importing import LARGEST, middle_of
     from eyas.maps.osm.reader import covered, no_streets, read_osm
+    from eyas.maps.osm.streets import is_street
 
     data = read_osm(path)
-    streets = sum("highway" in way.tags for way in data.ways.values())
+    streets = sum(is_street(way.tags) for way in data.ways.values())
     houses = sum("building" in way.tags for way in data.ways.values())
     if not streets:
         raise no_streets(data, str(path))

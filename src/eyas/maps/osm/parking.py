@@ -8,12 +8,15 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.engine.state.roads import RoadNetwork
-from eyas.engine.world.roads.areas import Street, polygons_of, streets
+from eyas.engine.world.roads.areas import streets
 from eyas.lanes import exact
 from eyas.maps.osm.features import Survey
 from eyas.maps.osm.reader import Tags
 from eyas.maps.osm.rings import OsmShapes
 from eyas.maps.osm.streets import is_street
+
+Points = NDArray[np.float64]
+Lines = NDArray[np.object_]
 
 Parking = Literal["yes", "no", "mapped", ""]
 """Whether cars park at a side of a street: where areas of the map say so; empty: not known."""
@@ -49,101 +52,88 @@ def add_parking(survey: Survey, shapes: OsmShapes, network: RoadNetwork) -> None
         shapes: Points and lines of the file.
         network: What SUMO has made of the streets.
     """
-    known = shapes.lines(is_street)
-    lines = np.array([line for _, line in known], object)
-    sides = [_sides(tags) for tags, _ in known]
     survey.stops = [place for _, place in shapes.points(_is_stop)]
-    kept_free = _kept_free(survey, shapes)
+    every = streets(network)
+    kerbs = np.array([_line(street.right) for street in every], object)
+    count = np.maximum(np.ceil(shapely.length(kerbs) / _STEP - 0.5), 0).astype(int)
+    owner = np.repeat(np.arange(len(every)), count)
+    at = _STEP * (np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count) + 0.5)
+    if not len(owner):
+        return
+    points = shapely.line_interpolate_point(kerbs[owner], at)
+    onwards = _directions(kerbs[owner], at)
+    known = shapes.lines(is_street)
+    said = _said(points, onwards, [line for _, line in known], [_sides(tags) for tags, _ in known])
+    slow = np.array([speed <= _FASTEST for speed in _speeds(network)])[owner]
+    usual = np.zeros(len(owner), np.bool_)
+    houses = shapely.STRtree([house.shape for house in survey.houses])
+    usual[houses.query(points, predicate="dwithin", distance=_HOUSES)[0]] = True
     areas = shapely.union_all([shape for _, shape in shapes.areas(_is_street_side)])
-    allowed = _Allowed(lines, sides, kept_free, areas, [house.shape for house in survey.houses])
-    speeds = {int(edge): network.lane_speed[k] for k, edge in enumerate(network.lane_edge)}
-    for number, street in enumerate(streets(network)):
-        spans = allowed.spans(street, slow=speeds[number] <= _FASTEST)
+    mapped = shapely.dwithin(areas, points, _AT_AREA)
+    parked = (said == "yes") | ((said == "") & usual & slow) | ((said != "no") & mapped)
+    kept_free = shapely.STRtree(_kept_free(survey, shapes))
+    parked[kept_free.query(points, predicate="intersects")[0]] = False
+    for street in np.unique(owner[parked]).tolist():
+        inside = np.concatenate([[False], parked[owner == street], [False]])
+        ends = (np.flatnonzero(np.diff(inside.astype(int))) * _STEP).clip(0.0, kerbs[street].length)
+        spans = [(low, high) for low, high in np.round(ends, 1).reshape(-1, 2).tolist()
+                 if high - low >= _SHORTEST]  # fmt: skip
         if spans:
-            survey.parking[network.edges[number]] = spans
+            survey.parking[network.edges[street]] = spans
 
 
 def everywhere(network: RoadNetwork) -> dict[str, list[tuple[float, float]]]:
     """Return the whole kerbs of all slow streets, of roads of which nothing else is known."""
-    speeds = {int(edge): network.lane_speed[k] for k, edge in enumerate(network.lane_edge)}
+    every = zip(network.edges, streets(network), _speeds(network), strict=True)
     return {
         name: [(0.0, round(length, 1))]
-        for number, (name, street) in enumerate(zip(network.edges, streets(network), strict=True))
-        if speeds[number] <= _FASTEST
-        and (length := shapely.LineString(street.right).length) >= _SHORTEST
+        for name, street, speed in every
+        if speed <= _FASTEST and (length := _line(street.right).length) >= _SHORTEST
     }
 
 
-class _Allowed:
-    """Decides where along a kerb cars park."""
+def _line(points: Points) -> shapely.LineString:
+    return shapely.LineString(points) if len(points) >= 2 else shapely.LineString()
 
-    def __init__(
-        self,
-        lines: NDArray[np.object_],  # Middle lines of the streets [m]
-        sides: Sequence[Mapping[str, Parking]],  # What the tags of each say
-        kept_free: shapely.Geometry,  # Where nothing parks [m]
-        areas: shapely.Geometry,  # Mapped areas of parking at streets [m]
-        houses: Sequence[shapely.Polygon],
-    ) -> None:
-        self._lines, self._sides, self._free, self._areas = lines, sides, kept_free, areas
-        self._tree, self._houses = shapely.STRtree(lines), shapely.STRtree(houses)
-        shapely.prepare(self._free)
-        shapely.prepare(self._areas)
 
-    def spans(self, street: Street, *, slow: bool) -> list[tuple[float, float]]:
-        """Return the parts of a kerb along which cars park, from and to [m]."""
-        if len(street.right) < 2:
-            return []
-        kerb = shapely.LineString(street.right)
-        at = np.arange(0.5 * _STEP, kerb.length, _STEP)
-        if not len(at):
-            return []
-        points = shapely.line_interpolate_point(kerb, at)
-        ahead = shapely.get_coordinates(shapely.line_interpolate_point(kerb, at + 0.2))
-        places = shapely.get_coordinates(points)
-        onwards = ahead - places
-        onwards /= np.maximum(exact.hypot(onwards[:, 0], onwards[:, 1]), 1e-9)[:, None]
-        said = self._said(points, places, onwards)
-        usual = np.zeros(len(at), np.bool_)
-        if slow:
-            near = self._houses.query(points, predicate="dwithin", distance=_HOUSES)[0]
-            usual[near] = True
-        mapped = shapely.dwithin(self._areas, points, _AT_AREA)
-        parked = (said == "yes") | ((said == "") & usual) | ((said != "no") & mapped)
-        parked &= ~shapely.intersects(self._free, points)
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], parked, [False]]).astype(int)))
-        ends = np.round((edges.reshape(-1, 2) * _STEP).clip(0.0, kerb.length), 1)
-        return [(low, high) for low, high in ends.tolist() if high - low >= _SHORTEST]
+def _speeds(network: RoadNetwork) -> list[float]:
+    """Return the speed limit of each edge [m/s]."""
+    speeds = {int(edge): network.lane_speed[k] for k, edge in enumerate(network.lane_edge)}
+    return [float(speeds[edge]) for edge in range(len(network.edges))]
 
-    def _said(
-        self, points: NDArray[np.object_], places: NDArray[np.float64], onwards: NDArray[np.float64]
-    ) -> NDArray[np.str_]:
-        """Return what the nearest street that runs along says of the side at each point."""
-        said = np.full(len(points), "no", "<U6")
-        best = np.full(len(points), np.inf)
-        which, line = self._tree.query(points, predicate="dwithin", distance=_REACH)
-        if not len(which):
-            return said
-        lines = self._lines[line]
-        along = shapely.line_locate_point(lines, points[which])
-        length = shapely.length(lines)
-        low = shapely.get_coordinates(
-            shapely.line_interpolate_point(lines, np.clip(along - 0.5, 0.0, length))
-        )
-        high = shapely.get_coordinates(
-            shapely.line_interpolate_point(lines, np.clip(along + 0.5, 0.0, length))
-        )
-        way = high - low
-        way /= np.maximum(exact.hypot(way[:, 0], way[:, 1]), 1e-9)[:, None]
-        away = places[which] - 0.5 * (low + high)
-        left = way[:, 0] * away[:, 1] - way[:, 1] * away[:, 0] > 0.0
-        alike = np.abs((way * onwards[which]).sum(axis=1)) > _ALIKE
-        distance = np.round(exact.hypot(away[:, 0], away[:, 1]), 3)
-        for k in np.flatnonzero(alike).tolist():
-            if distance[k] < best[which[k]]:
-                best[which[k]] = distance[k]
-                said[which[k]] = self._sides[line[k]]["left" if left[k] else "right"]
-        return said
+
+def _directions(lines: Lines, at: Points) -> Points:
+    """Return the unit vectors along lines at places on them [m], shape (K, 2)."""
+    ends = np.minimum(at + 0.5, shapely.length(lines)), np.maximum(at - 0.5, 0.0)
+    high, low = (shapely.get_coordinates(shapely.line_interpolate_point(lines, s)) for s in ends)
+    way = high - low
+    unit: Points = way / np.maximum(exact.hypot(way[:, 0], way[:, 1]), 1e-9)[:, None]
+    return unit
+
+
+def _said(
+    points: Lines,  # On kerbs, shape (K,)
+    onwards: Points,  # Direction of the kerb there, shape (K, 2)
+    lines: Sequence[shapely.LineString],  # Middle lines of the streets
+    sides: Sequence[Mapping[str, Parking]],  # What the tags of each say
+) -> NDArray[np.str_]:
+    """Return what the nearest street that runs along says of the side at each point."""
+    said = np.full(len(points), "no", "<U6")
+    tree = shapely.STRtree(lines)
+    which, line = tree.query(points, predicate="dwithin", distance=_REACH)
+    near = tree.geometries[line]
+    along = shapely.line_locate_point(near, points[which])
+    way = _directions(near, along)
+    foot = shapely.get_coordinates(shapely.line_interpolate_point(near, along))
+    away = shapely.get_coordinates(points[which]) - foot
+    left = way[:, 0] * away[:, 1] - way[:, 1] * away[:, 0] > 0.0
+    alike = np.flatnonzero(np.abs((way * onwards[which]).sum(axis=1)) > _ALIKE)
+    distance = np.round(exact.hypot(away[alike, 0], away[alike, 1]), 3)
+    order = alike[np.lexsort((line[alike], distance, which[alike]))]
+    _, first = np.unique(which[order], return_index=True)
+    for pair in order[first].tolist():
+        said[which[pair]] = sides[line[pair]]["left" if left[pair] else "right"]
+    return said
 
 
 def _sides(tags: Tags) -> dict[str, Parking]:
@@ -179,7 +169,7 @@ def _is_driveway(tags: Tags) -> bool:
     return tags.get("highway") == "service" and tags.get("service") not in _NO_DRIVEWAYS
 
 
-def _kept_free(survey: Survey, shapes: OsmShapes) -> shapely.Geometry:
+def _kept_free(survey: Survey, shapes: OsmShapes) -> list[shapely.Geometry]:
     """Return where nothing parks [m]: bus stops, crossings, hydrants, driveways."""
 
     def is_kept(tags: Tags) -> bool:
@@ -187,7 +177,7 @@ def _kept_free(survey: Survey, shapes: OsmShapes) -> shapely.Geometry:
 
     stops = [place for _, place in shapes.points(is_kept)]
     hydrants = shapes.points(lambda tags: tags.get("emergency") == "fire_hydrant")
-    parts = [
+    return [
         *shapely.buffer(shapely.points(np.reshape(stops, (-1, 2))), _FROM_STOP),
         *shapely.buffer(shapely.points(np.reshape(survey.crossings, (-1, 2))), _FROM_CROSSING),
         *shapely.buffer(
@@ -197,4 +187,3 @@ def _kept_free(survey: Survey, shapes: OsmShapes) -> shapely.Geometry:
             [line for _, line in shapes.lines(_is_driveway)], _DRIVEWAY, cap_style="flat"
         ),
     ]
-    return shapely.MultiPolygon(polygons_of(shapely.union_all(parts)))
