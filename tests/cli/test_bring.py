@@ -104,6 +104,14 @@ def zipped(path, **files):
     return path
 
 
+def layer(*shape):
+    """The weight of a layer in a pickle: a storage, the offset in it, and its shape."""
+    ends = {2: b"\x86", 4: b"t"}
+    numbers = b"".join(b"K" + bytes([one]) for one in shape)
+    begin = b"" if len(shape) < 4 else b"("
+    return b"\x80\x02X\x01\x00\x00\x00aQK\x00" + begin + numbers + ends[len(shape)] + b"."
+
+
 def test_a_zip_is_what_it_holds(tmp_path):
     with zipfile.ZipFile(tmp_path / "ppo.zip", "w") as archive:
         archive.writestr("data", "{}")
@@ -116,6 +124,12 @@ def test_a_zip_is_what_it_holds(tmp_path):
         zipped(tmp_path / "state.pt", m__data_pkl="OrderedDict"): "weights without their network",
         tmp_path / "old.pth": "weights without their network",
         zipped(tmp_path / "pictures.zip", a__b="c"): "neither a policy of stable-baselines3",
+        zipped(
+            tmp_path / "legs.pt", m__constants_pkl="", m__data_pkl=layer(8, 45)
+        ): "without convolutions whose layers take 45 numbers",
+        zipped(
+            tmp_path / "eye.pt", m__constants_pkl="", m__data_pkl=layer(8, 3, 5, 5)
+        ): "a policy of PyTorch",
         written(tmp_path, "cut.zip", "PK"): "neither a zip file nor one of PyTorch",
     }
     for path, said in cases.items():

@@ -164,7 +164,9 @@ def test_convert_writes_the_other_notation_and_rewrites_nothing(monkeypatch, cap
         tmp_path / name for name in ("legacy.json", "native.json", "again.json")
     )
     legacy.write_text(json.dumps(to_original(EyasConfig(video={"fps": 9}))))
-    assert run(monkeypatch, capsys, "config", "convert", legacy, native)[0] == 0
+    code, out, _ = run(monkeypatch, capsys, "config", "convert", legacy, native)
+    assert code == 0
+    assert "native.json: the settings of" in "".join(out)
     video = {"fps": 9, "jpeg_quality": 100, "flight": "exact"}
     traffic = {"signals": "amber", "lamps": "dark"}
     tracker = {"flight": "original", "off_centre": True}

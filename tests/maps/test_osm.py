@@ -180,6 +180,18 @@ def test_a_missing_file_is_one_line(tmp_path):
         read_osm(tmp_path / "none.osm")
 
 
+def test_a_map_of_lanelet2_in_metres_is_called_so(tmp_path):
+    path = tmp_path / "lanelet2_map.osm"
+    path.write_text(
+        '<osm><node id="1" lat="" lon=""><tag k="local_x" v="5.5"/></node>'
+        '<way id="2"><nd ref="1"/></way>'
+        '<relation id="3"><member type="way" ref="2" role="left"/>'
+        '<tag k="type" v="lanelet"/></relation></osm>'
+    )
+    with pytest.raises(DataFileError, match="a map of Lanelet2, which is not read"):
+        read_osm(path)
+
+
 def test_deleted_objects_are_left_out(tmp_path):
     path = file(tmp_path, node(1, 0, 0), '<node id="2" visible="false"/>')
     assert list(read_osm(path).places) == [1]

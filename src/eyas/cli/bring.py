@@ -1,6 +1,7 @@
 """`eyas bring`: what files of others are, what is left out of them, and what makes them usable."""
 
 import json
+import pickletools
 import shlex
 import zipfile
 import zlib
@@ -12,12 +13,15 @@ import numpy as np
 
 from eyas.engine.core.errors import DataFileError, EyasError
 from eyas.engine.core.files import refuse_pointer
+from eyas.engine.terminal.counts import many
 
 Bounds = tuple[float, float, float, float]  # West, south, east, north [degrees]
 
 _PACE = 9  # Of a car on a track without times [m/s]
 _SIMPLER = 20_000  # Triangles to which larger shapes are simplified
 _PICKLE = 64 << 20  # Largest pickle whose names are searched [bytes]
+_OPERATIONS = 4 << 20  # Largest part of it whose operations are looked at [bytes]
+_LEAST = 32  # Side of the smallest pictures that networks are thought to see [pixels]
 _MOST = 200  # Files of a folder that are looked at
 _AROUND = 300.0  # Streets around a ride on a large place [m]
 
@@ -82,7 +86,7 @@ def _of_folder(folder: Path) -> list[Finding]:
         clips = []
     if clips:
         frames, known = sum(map(len, clips)), sum(int(clip.visible.sum()) for clip in clips)
-        what = f"{_many(len(clips), 'sequence')} of a tracking benchmark, {frames:,} pictures"
+        what = f"{many(len(clips), 'sequence')} of a tracking benchmark, {frames:,} pictures"
         notes = () if known >= frames else (f"{frames - known:,} pictures without a box",)
         return [Brought(folder, what, notes, (f"eyas track {quoted} --tracker csrt",))]
     inside = sorted(path for path in folder.iterdir() if path.is_file())
@@ -91,7 +95,7 @@ def _of_folder(folder: Path) -> list[Finding]:
     if len(read) > _MOST:
         found.append(Refused(folder, f"{folder}: {len(read) - _MOST} more files are left out"))
     if len(read) < len(inside) or not inside:
-        others = _many(len(inside) - len(read), "file")
+        others = many(len(inside) - len(read), "file")
         found.append(Refused(folder, f"{folder}: {others} of no kind that is read"))
     return found
 
@@ -112,15 +116,16 @@ def _map(path: Path) -> Brought:
     from eyas.maps.osm.driving_side import tagged_side, usual_side
     from eyas.maps.osm.importing import LARGEST, middle_of
     from eyas.maps.osm.reader import covered, no_streets, read_osm
+    from eyas.maps.osm.streets import is_street
 
     data = read_osm(path)
-    streets = sum("highway" in way.tags for way in data.ways.values())
+    streets = sum(is_street(way.tags) for way in data.ways.values())
     houses = sum("building" in way.tags for way in data.ways.values())
     if not streets:
         raise no_streets(data, str(path))
     area = west, south, east, north = covered(data, None, str(path))
     what = (
-        f"a place of OpenStreetMap, {_many(streets, 'street')}, {_many(houses, 'building')}, "
+        f"a place of OpenStreetMap, {many(streets, 'street')}, {many(houses, 'building')}, "
         f"about latitude {0.5 * (south + north):.4f}, longitude {0.5 * (west + east):.4f}"
     )
     side = tagged_side(data) or usual_side(0.5 * (west + east), 0.5 * (south + north))
@@ -191,7 +196,7 @@ def _track(path: Path) -> Brought:
         at = ', "at": [0, 0, 0]'
         if not np.isnan(first.place[:, 2]).all():
             notes.append("altitudes are left out: a target stays on the ground")
-    what = f"{_many(len(tracks), 'track')}, {_many(points, 'point')}{long}, {where}"
+    what = f"{many(len(tracks), 'track')}, {many(points, 'point')}{long}, {where}"
     custom = f'{{"trajectory": {json.dumps(str(path))}{at}, "body": "passenger"{pace}}}'
     uses = (
         f"eyas video --set custom={shlex.quote(custom)} --set same_target=true",
@@ -206,7 +211,7 @@ def _vehicles(path: Path) -> Brought:
 
     table = read_tracks(path)
     last = max(float(vehicle.time[-1]) for vehicle in table.vehicles)
-    count = _many(len(table.vehicles), "recorded vehicle")
+    count = many(len(table.vehicles), "recorded vehicle")
     notes = [f"left out: {count} {what}" for what, count in table.left_out.items()]
     if table.origin is None:
         notes.append("it lies nowhere on earth: --at says where on the map")
@@ -284,6 +289,12 @@ def _what_policy(path: Path) -> str:
         raise DataFileError(f"{path}: neither a zip file nor one of PyTorch")
     if {"data", "policy.pth"} <= names:
         return "a policy of stable-baselines3"
+    numbers = _numbers_in(module)
+    if numbers is not None:
+        raise DataFileError(
+            f"{path}: a network without convolutions whose layers take {numbers} numbers at most: "
+            f"no picture of {_LEAST} x {_LEAST} or more goes in"
+        )
     if names & {"constants.pkl", "archive_format", "archive_version"}:
         return "a policy of PyTorch"
     if "data.pkl" not in names:
@@ -296,6 +307,29 @@ def _what_policy(path: Path) -> str:
             f"{path}: weights without their network do not fly; export it with torch.onnx.export"
         )
     return "a network of PyTorch"
+
+
+def _numbers_in(pickle: bytes) -> int | None:
+    """Return the largest input of the layers of a network in a pickle, which is not unpickled.
+
+    None: one of them may take pictures, or none is found.
+    """
+    shapes: list[list[int]] = []
+    found: list[int] | None = None  # Numbers since the last reference to a storage
+    try:
+        for code, value, _ in pickletools.genops(pickle[:_OPERATIONS]):
+            if code.name == "BINPERSID":
+                found = []
+            elif found is not None and code.name.startswith("BININT"):
+                found.append(int(value))
+            elif found is not None and "TUPLE" in code.name:
+                shapes.append(found[1:])  # behind the offset in the storage
+                found = None
+    except (ValueError, IndexError, UnicodeDecodeError, OverflowError):
+        return None
+    widest = max((shape[-1] for shape in shapes if len(shape) == 2), default=0)
+    several = any(len(shape) > 3 for shape in shapes)
+    return None if several or not 0 < widest < 3 * _LEAST**2 else widest
 
 
 def _film(path: Path) -> Brought:
@@ -396,10 +430,6 @@ def _around(area: Bounds) -> str:
 
 def _quoted(path: Path) -> str:
     return shlex.quote(str(path))
-
-
-def _many(count: int, noun: str) -> str:
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"
 
 
 def _kinds() -> tuple[tuple[tuple[str, ...], Callable[[Path], Brought]], ...]:

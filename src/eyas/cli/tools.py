@@ -159,6 +159,8 @@ def convert_config(
     legacy = not is_original(read_settings(source))
     text = _text(load_settings(source, gathered(set_), trust=True), legacy=legacy)
     write_atomic(target, f"{text}\n".encode())
+    written = "the DAT benchmark's" if legacy else "the native"
+    typer.echo(f"{target}: the settings of {source} in {written} notation")
 
 
 @config_app.command("schema")

@@ -124,7 +124,8 @@ def track(
         typer.Option(
             "--box",
             metavar="LEFT,TOP,WIDTH,HEIGHT",
-            help="The target in the first picture, in pixels, where there is no truth.",
+            help="The target in the first picture, in pixels, where there is no truth: boxes and a "
+            "film are the result.",
         ),
     ] = None,
     restarts: Annotated[
@@ -137,7 +138,7 @@ def track(
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
-    """Score a box tracker on recordings or real sequences: AO, SR, success, precision."""
+    """Score a box tracker on recordings or sequences, or let it follow a box through a film."""
     from eyas.benchmark.report.plots import require_matplotlib
     from eyas.datasets.tracking.report import draw_curves, print_figures
     from eyas.datasets.tracking.run import Scoring, parsed_box, run

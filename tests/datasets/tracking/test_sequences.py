@@ -142,16 +142,40 @@ def test_of_one_box_all_pictures_are_tracked_and_none_scored(tmp_path):
     assert len(rows) == 7
 
 
-def test_a_film_is_tracked_by_a_box_or_by_a_file(tmp_path):
+def film_in(folder):
     av = pytest.importorskip("av")
-    with av.open(str(tmp_path / "film.mp4"), "w") as container:
+    with av.open(str(folder / "film.mp4"), "w") as container:
         stream = container.add_stream("mpeg4", rate=10)
         stream.width, stream.height = 64, 48
         for number in range(30):
             pixels = np.full((48, 64, 3), 4 * number, np.uint8)
             container.mux(stream.encode(av.VideoFrame.from_ndarray(pixels)))
         container.mux(stream.encode())
-    film = tmp_path / "film.mp4"
+    return folder / "film.mp4"
+
+
+def test_by_a_box_alone_boxes_and_a_film_are_made_and_no_table(tmp_path, eyas_command):
+    film = film_in(tmp_path)
+    pictures(tmp_path / "shots", 5)
+    words = ["--tracker", "stay", "--box", "20,10,16,12", "--workers", "1", "--out"]
+    done = eyas_command("track", film, *words, tmp_path / "of-film")
+    assert done.returncode == 0, done.stderr
+    assert "no true boxes, so no figures" in done.stdout
+    assert "a box in 29 of 29 frames" in done.stdout
+    assert "AO" not in done.stdout
+    (drawn,) = sequences_in(tmp_path / "of-film/films/film.mp4", box=(20.0, 10.0, 16.0, 12.0))
+    assert (len(drawn), drawn.size, drawn.fps) == (30, (64, 48), 10.0)
+    for picture in list(drawn.pictures())[::10]:
+        around = picture[10, 22:34].astype(int)  # the upper edge of the box: yellow
+        assert (around[:, 0] - around[:, 2]).min() > 60
+        assert np.ptp(picture[13:19, 24:32].astype(int)) < 40  # grey inside
+    done = eyas_command("track", tmp_path / "shots", *words, tmp_path / "of-shots")
+    assert "a box in 4 of 4 frames" in done.stdout
+    assert str(tmp_path / "of-shots/films/shots") in done.stdout
+
+
+def test_a_film_is_tracked_by_a_box_or_by_a_file(tmp_path):
+    film = film_in(tmp_path)
     (by_box,) = sequences_in(film, box=(1.0, 1.0, 9.0, 9.0))
     assert (len(by_box), by_box.size, by_box.fps) == (30, (64, 48), 10.0)
     (tmp_path / "gt.txt").write_text("".join(f"{n},7,1,1,9,9,1,-1,-1,-1\n" for n in range(3, 29)))

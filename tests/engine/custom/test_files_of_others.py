@@ -117,6 +117,25 @@ def test_a_triangle_with_a_corner_that_is_not_there_is_one_line(tmp_path):
         read(path)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "# a1b2\n# c3d4\n# s_m; x_m; y_m; psi_rad\n0.0; 1.5; 2; -0.7\n3; 4.5; 2; 0\n",
+        "# x_m,y_m,w_tr_right_m,w_tr_left_m\n1.5,2,5.7,6.4\n4.5,2,5.7,6.4\n",
+        "# made by hand\nx,y\n1.5,2\n4.5,2\n",
+    ],
+)
+def test_racing_lines_have_comments_and_no_times(tmp_path, text):
+    path = tmp_path / "line.csv"
+    path.write_text(text)
+    (track,) = tracks_in(path)
+    assert track.time is None
+    assert track.place[:, :2].tolist() == [[1.5, 2.0], [4.5, 2.0]]
+    path.write_text("# note\nid,x,y\n1,0,0\n")
+    with pytest.raises(EyasError, match="line 2: no column 't' in 'id,x,y'"):
+        tracks_in(path)
+
+
 def test_a_table_of_recorded_road_users_holds_many_bodies(tmp_path):
     path = tmp_path / "tracks.csv"  # the columns of inD
     rows = [f"0,{who},{frame},{10 * who + frame},{who}" for who in (7, 3) for frame in range(5)]

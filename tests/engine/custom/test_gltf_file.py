@@ -74,6 +74,14 @@ def test_integers_that_are_not_normalised_are_lengths(read):
     assert read(gltf(POINTS.astype("i2"))).size == (4.0, 2.0, 2.0)
 
 
+def test_what_hangs_on_a_camera_is_read(read):
+    header = gltf(POINTS.astype("f4"))
+    header["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]
+    header["nodes"] += [{"name": "all", "children": [2]}, {"camera": 0, "children": [0]}]
+    header["scenes"][0]["nodes"] = [1]
+    assert read(header).size == (4.0, 2.0, 2.0)
+
+
 def test_sparse_accessors_have_their_values(read):
     header = gltf(POINTS.astype("f4"))
     data = struct.pack("<HH3f", 1, 0, 9.0, 0.0, 0.0)

@@ -150,7 +150,7 @@ def test_what_is_wrong_with_a_shape_is_told():
     broken[7, 1] = np.nan
     assert told(Triangles(broken, good.corners, good.colours)) == ["1 vertex not finite (NaN)"]
     flat = Triangles(good.points * [1, 1, 0], good.corners, good.colours)
-    assert told(flat)[0].startswith("it has no size: ")
+    assert told(flat)[0].startswith("it has no size, or is flat: ")
 
 
 @pytest.mark.slow

@@ -68,7 +68,8 @@ def test_who_stands_keeps_the_heading(tmp_path: Path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "line 1: no column 't'"),
+        ("", "line 1: no column 'x'"),
+        ("x,y\n0,0\n1,1\n", "no column 't'; allowed here: t,x,y"),
         ("t,x\n0,0\n", "line 1: no column 'y' in 't,x'; allowed: t,x,y and perhaps z,yaw"),
         ("t,x,y\n0,0,0\n", "1 points; a trajectory has two or more"),
         ("t,x,y\n0,0,0\n1,nan,0\n", "line 3: '1,nan,0' is not allowed: 3 finite numbers"),

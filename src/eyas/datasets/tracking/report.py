@@ -8,10 +8,19 @@ from rich.console import Console
 from rich.table import Table
 
 from eyas.benchmark.report.plots import Axes, save_plot
+from eyas.datasets.tracking.film import FILMS
+from eyas.datasets.tracking.run import BOXES
+
+_MOST_CLIPS = 20  # That are listed where none is scored
 
 
 def print_figures(out: Path, results: dict[str, Any]) -> None:
-    """Print the figures of all frames and of each stratum."""
+    """Print the figures of all frames and of each stratum; without truth, what was tracked."""
+    console = Console()
+    console.width = max(console.width, 100)  # else a pipe would cut the numbers
+    if not results["all"]["frames"]:
+        _print_tracked(console, out, results)
+        return
     table = Table(title=f"{results['tracker']} on {results['data']}")
     table.add_column("frames", no_wrap=True)
     titles = ("number", "AO", "95 %", "SR.50", "SR.75", "prec.", "succ.")
@@ -23,10 +32,22 @@ def print_figures(out: Path, results: dict[str, Any]) -> None:
         for value, figures in values.items():
             if figures["frames"]:
                 table.add_row(f"{criterion}: {value}", *_row(figures))
-    console = Console()
-    console.width = max(console.width, 100)  # else a pipe would cut the numbers
     console.print(table)
     console.print(f"figures in {out}", highlight=False, markup=False, soft_wrap=True)
+
+
+def _print_tracked(console: Console, out: Path, results: dict[str, Any]) -> None:
+    """Print what was tracked of clips that have no true boxes to score it by."""
+    lines = [f"{results['tracker']} on {results['data']}: no true boxes, so no figures"]
+    for name, single in list(results["episodes"].items())[:_MOST_CLIPS]:
+        found = single["tracked"] - single["lost"]
+        lines.append(f"{name}: a box in {found} of {single['tracked']} frames after the first")
+    if len(results["episodes"]) > _MOST_CLIPS:
+        lines.append(f"and {len(results['episodes']) - _MOST_CLIPS} others")
+    lines.append(f"boxes in {out / BOXES}")
+    lines += [f"film {path}" for path in sorted((out / FILMS).glob("*"))]
+    for line in lines:
+        console.print(line, highlight=False, markup=False, soft_wrap=True)
 
 
 def _row(figures: dict[str, Any]) -> list[str]:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from eyas.benchmark.policies.box_trackers import box_tracker
 from eyas.datasets.tracking.clip import Clip, Mask, RecordedClip
+from eyas.datasets.tracking.film import FILMS, draw_film
 from eyas.datasets.tracking.one_pass import (
     Figures,
     centre_errors,
@@ -115,6 +116,9 @@ def run(
         except KeyboardInterrupt as interrupt:
             interrupt.add_note(f"every file in {out} is whole; continue with --resume")
             raise
+        if scoring.box is not None:
+            for episode in episodes:
+                draw_film(out, episode, _read_boxes(out, episode)[:, :4])
         results = _results(scoring, episodes, out)
         write_atomic(out / RESULTS, (json.dumps(results, indent=1) + "\n").encode())
         if seconds.size:
@@ -180,7 +184,8 @@ def _open(out: Path, scoring: Scoring, *, resume: bool, overwrite: bool) -> None
         return
     with refusals(out):
         (out / BOXES).mkdir(exist_ok=True)
-        for path in (*(out / BOXES).glob("*.txt"), out / RESULTS, out / SPEED):
+        drawn = (out / FILMS).glob("*") if (out / FILMS).is_dir() else ()
+        for path in (*(out / BOXES).glob("*.txt"), *drawn, out / RESULTS, out / SPEED):
             path.unlink(missing_ok=True)
     write_atomic(out / SCORING, (json.dumps(asked, indent=1) + "\n").encode())
 
@@ -263,11 +268,13 @@ def _results(scoring: Scoring, episodes: Sequence[Clip], out: Path) -> dict[str,
     published: list[Sample] = []
     for each in episodes:
         episode = copy(each)  # whose labels go with it
-        overlap, error, counts, told = _scored(out, episode)
+        overlap, error, counts, told, (tracked, lost) = _scored(out, episode)
         published.append(told)
         everything.append((overlap[counts], error[counts]))
         failures = _failures(out, episode)
         single[episode.name] = {**_shown(figures_of(everything[-1:])), "failures": failures}
+        if not counts.any():
+            single[episode.name] |= {"tracked": tracked, "lost": lost}
         for criterion, values in episode.strata().items():
             for value, chosen in values.items():
                 samples = strata.setdefault(criterion, {}).setdefault(value, [])
@@ -292,10 +299,27 @@ def _results(scoring: Scoring, episodes: Sequence[Clip], out: Path) -> dict[str,
 
 def _scored(
     out: Path, episode: Clip
-) -> tuple[NDArray[np.float64], NDArray[np.float64], Mask, Sample]:
+) -> tuple[NDArray[np.float64], NDArray[np.float64], Mask, Sample, tuple[int, int]]:
     """Return overlaps, centre errors, which frames count (visible, and the box not given), shapes
-    (T,), and the boxes and true boxes of all visible frames from the first on.
+    (T,), the boxes and true boxes of all visible frames from the first on, and the numbers of
+    frames in which the tracker searched, and in which it found nothing.
     """
+    table = _read_boxes(out, episode)
+    boxes, visible = table[:, :4], episode.visible
+    truth = np.nan_to_num(episode.boxes)
+    started = np.maximum.accumulate(table[:, 4] > 0.0)
+    searched = started & (table[:, 4] == 0.0)
+    counts = visible & searched
+    shown = visible & started
+    lost = searched & ~(boxes[:, 2:] > 0.0).all(axis=1)
+    errors = centre_errors(boxes, truth)
+    numbers = int(searched.sum()), int(lost.sum())
+    told = boxes[shown], truth[shown]
+    return overlaps(boxes, truth, episode.size), errors, counts, told, numbers
+
+
+def _read_boxes(out: Path, episode: Clip) -> NDArray[np.float64]:
+    """Return left, top, width, height, and whether the box was given, of each frame, (T, 5)."""
     path = _boxes_file(out, episode)
     try:
         content = read_limited(path, _LARGEST_BOXES)
@@ -307,13 +331,7 @@ def _scored(
     if table.shape != (len(episode), 5) or not (np.abs(table) <= 1e9).all():
         wrong = f"{path}: has not five numbers for each frame"
         raise DataFileError(f"{wrong}; start again with --overwrite")
-    boxes, visible = table[:, :4], episode.visible
-    truth = np.nan_to_num(episode.boxes)
-    started = np.maximum.accumulate(table[:, 4] > 0.0)
-    counts = visible & started & (table[:, 4] == 0.0)
-    shown = visible & started
-    errors = centre_errors(boxes, truth)
-    return overlaps(boxes, truth, episode.size), errors, counts, (boxes[shown], truth[shown])
+    return np.asarray(table, np.float64)
 
 
 def _failures(out: Path, episode: Clip) -> int:

@@ -149,6 +149,8 @@ class _Mender:
             if "sparse" in accessor or (divided and accessor["componentType"] != _FLOAT):
                 self._replace(accessor, self._values(accessor), divided=divided)
                 changed = True
+        for node in self._header.get("nodes", ()):  # trimesh loses what hangs on a camera
+            changed |= node.pop("camera", None) is not None
         return changed
 
     def _replace(self, accessor: dict[str, Any], values: NDArray[Any], *, divided: bool) -> None:

@@ -63,7 +63,7 @@ def of_shape(shape: Triangles) -> Iterator[Finding]:
         yield Finding(f"{count} triangles; allowed: up to {LARGEST}; {advice}", fatal=True)
     extent = " x ".join(f"{length:.4g}" for length in size)
     if min(size) < 1e-6 * max(max(size), 1e-9):
-        yield Finding(f"it has no size: {extent} m", fatal=True)
+        yield Finding(f"it has no size, or is flat: {extent} m", fatal=True)
         return
     if max(size) > _LARGE or max(size) < _SMALL:
         yield Finding(f"{extent} m: {_unit(max(size))}", fatal=max(size) > LONGEST)

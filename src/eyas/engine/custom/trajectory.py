@@ -102,13 +102,14 @@ class Track(NamedTuple):
 
 def read_table(path: Path) -> list[Track]:
     """Return the tracks of a CSV file, whose columns may have the names that others give them: one
-    for each value of a column `id`, in the order of the file, or one.
+    for each value of a column `id`, in the order of the file, or one, which may have no times.
 
     Raises:
         DataFileError: The file is missing, or has not the columns, or something else than numbers,
             or too many bodies.
     """
     text = read_limited(path, _LARGEST).decode("utf-8-sig", errors="replace")
+    text, above = _below_comments(text)
     delimiter = _delimiter(text)
     try:
         # Also lines that end with a carriage return, as some spreadsheets write them.
@@ -119,33 +120,37 @@ def read_table(path: Path) -> list[Track]:
     names = [name for name, _ in named]
     on_earth = "latitude" in names or "longitude" in names
     needed = ("t", "latitude", "longitude") if on_earth else COLUMNS[:3]
+    if not on_earth and "id" not in names:  # a list of towns is no track
+        needed = needed[1:]  # without times it goes at one speed
     missing = [name for name in needed if name not in names]
     if missing:
         there = shown(",".join(lines[0] if lines else []))
         raise DataFileError(
-            f"{path}: line 1: no column '{missing[0]}' in {there}; allowed: t,x,y and perhaps "
-            "z,yaw; or t,latitude,longitude"
+            f"{path}: line {above + 1}: no column '{missing[0]}' in {there}; allowed: t,x,y and "
+            "perhaps z,yaw; or t,latitude,longitude"
         )
     for name in COLUMNS:
         if names.count(name) > 1:
-            raise DataFileError(f"{path}: line 1: two columns are '{name}'")
+            raise DataFileError(f"{path}: line {above + 1}: two columns are '{name}'")
     wanted = [(k, name) for k, name in enumerate(names) if name in _LIMITS]
-    filled = [(k, line) for k, line in enumerate(lines[1:], 2) if any(map(str.strip, line))]
+    filled = [(k, line) for k, line in enumerate(lines[1:], above + 2) if any(map(str.strip, line))]
     rows = [
         _numbers(path, k, line, len(names), wanted, decimal_comma=delimiter == ";")
         for k, line in filled
     ]
     values = np.array(rows, np.float64).reshape(-1, len(wanted))
     column = {name: values[:, k] for k, (_, name) in enumerate(wanted)}
-    time = column["t"] * dict(named)["t"]
-    time = time * _epoch_unit(time)
-    level = np.full(len(time), np.nan)
+    time = None
+    if "t" in column:
+        time = column["t"] * dict(named)["t"]
+        time = time * _epoch_unit(time)
+    level = np.full(len(values), np.nan)
     if on_earth:
         places = (column["longitude"], column["latitude"], column.get("z", level))
     else:
         places = (column["x"], column["y"], column.get("z", level))
     yaw = None
-    if "yaw" in column and not on_earth:
+    if "yaw" in column and not on_earth and time is not None:
         yaw = column["yaw"]
     whole = Track(time, np.column_stack(places), on_earth, yaw)
     if "id" not in names:
@@ -162,9 +167,9 @@ def read_table(path: Path) -> list[Track]:
 
 
 def _of_body(whole: Track, own: slice | NDArray[np.int64], name: str) -> Track:
-    assert whole.time is not None
     yaw = None if whole.yaw is None else np.unwrap(whole.yaw[own])
-    return Track(whole.time[own], whole.place[own], whole.on_earth, yaw, name)
+    time = None if whole.time is None else whole.time[own]
+    return Track(time, whole.place[own], whole.on_earth, yaw, name)
 
 
 def read_trajectory(path: Path) -> Trajectory:
@@ -177,7 +182,8 @@ def read_trajectory(path: Path) -> Trajectory:
     track, *others = read_table(path)
     if others:
         raise DataFileError(f"{path}: {1 + len(others)} bodies; allowed here: one")
-    assert track.time is not None  # a table has times
+    if track.time is None:
+        raise DataFileError(f"{path}: no column 't'; allowed here: t,x,y and perhaps z,yaw")
     return trajectory_of(path, track.time, track.place, track.yaw)
 
 
@@ -229,9 +235,21 @@ def _column(name: str) -> tuple[str, float]:
     unit = re.search(r"[\[(]\s*([a-zµ]+)\s*[\])]$|_([a-zµ]+)$", plain)
     stem = re.sub(r"\s*[\[(].*[\])]$", "", plain).strip().replace(" ", "_")
     factor = _UNITS.get((unit[1] or unit[2]) if unit else "", 0.0)
-    if stem not in _NAMED and factor and "_" in stem:
+    if stem not in _NAMED and (factor or stem.endswith(("_m", "_deg"))) and "_" in stem:
         stem = stem.rpartition("_")[0]
     return _NAMED.get(stem, stem), factor or 1.0
+
+
+def _below_comments(text: str) -> tuple[str, int]:
+    """Return a table without the comments above it, and the number of their lines.
+
+    Of lines that begin with #, the last names the columns if numbers follow it.
+    """
+    lines = text.splitlines(keepends=True)
+    count = next((k for k, line in enumerate(lines) if not line.startswith("#")), len(lines))
+    if count and count < len(lines) and re.match(r"\s*[-+.\d]", lines[count]):
+        count -= 1
+    return "".join(lines[count:]), count
 
 
 def _delimiter(text: str) -> str:

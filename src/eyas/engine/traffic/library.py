@@ -161,6 +161,20 @@ def find_recording(
     return find_file(graph, config, trackers=trackers, duration=duration, shipped=shipped).load()
 
 
+def known_recording(
+    graph: RoadGraph, config: TrafficConfig, shipped: Iterable[Traversable] = ()
+) -> TrafficRecording | None:
+    """Return the shipped or the cached recording of `find_file`; None: it is not made yet."""
+    if graph.finished:
+        config = config.model_copy(update={"signals": Signals.AMBER})
+    wanted = resolved(config, CANONICAL_SEED if config.seed is None else config.seed)
+    for file in map(RecordingFile.read, shipped):
+        if _fits(file.outline().provenance, graph, wanted):
+            return file.load()
+    kept = _cached(graph, wanted, STANDARD_DURATION, ())
+    return None if kept is None else kept.load()
+
+
 def obeys_signals(
     graph: RoadGraph,  # Roads to drive on
     config: TrafficConfig,  # Settings of the traffic

@@ -81,6 +81,9 @@ def import_map(  # noqa: PLR0913  # its options
         ),
     ] = None,
     traffic: Annotated[bool, typer.Option(help="Record the traffic now, not on first use.")] = True,
+    parked: Annotated[
+        bool, typer.Option(help="Cars park along kerbs, as tagged or as is usual.")
+    ] = True,
     overwrite: Overwrite = False,
 ) -> None:
     """Make a map of OpenStreetMap or SUMO; use it with --map NAME, or --map DIR with --out DIR."""
@@ -107,6 +110,7 @@ def import_map(  # noqa: PLR0913  # its options
             out=out,
             buildings=around or buildings,
             record=traffic,
+            parked=parked,
             overwrite=overwrite,
         )
         typer.echo("\n".join(report.lines()))
@@ -115,7 +119,14 @@ def import_map(  # noqa: PLR0913  # its options
     if drive_on is not None:
         _known_side(drive_on)
     report = run(
-        file, name, out=out, bounds=bounds, drive_on=drive_on, record=traffic, overwrite=overwrite
+        file,
+        name,
+        out=out,
+        bounds=bounds,
+        drive_on=drive_on,
+        record=traffic,
+        parked=parked,
+        overwrite=overwrite,
     )
     for line in report.lines():
         typer.echo(line)
@@ -194,7 +205,7 @@ def check_plan(
         typer.echo(line)
     if wrong:
         raise typer.Exit(1)
-    typer.echo(f"{file}: a plan of a map; use it with --map {file}")
+    typer.echo(f"{file}: no faults found; use it with --map {file}")
 
 
 @app.command("export")

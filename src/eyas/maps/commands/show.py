@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 from rich.console import Console
 
-from eyas.engine.core.errors import EyasError
 from eyas.engine.core.files import atomic_path
 from eyas.engine.sim.scenes import load_scene
 from eyas.engine.state.scene import ObjectClass, Scene
 from eyas.engine.state.terrain import reliefs
 from eyas.engine.traffic.config import TrafficConfig
-from eyas.engine.traffic.library import find_recording
+from eyas.engine.traffic.library import known_recording
 from eyas.engine.world.maps import MAPS
 
 _MARGIN = 60.0  # Around streets and buildings [m]
@@ -41,27 +40,26 @@ def run(name: str, seed: int, path: Path, width: int, *, tracks: bool) -> None:
 
     Args:
         width: Width of the picture [pixels].
-        tracks: Whether the ways of the recorded cars are drawn.
+        tracks: Whether the ways of the recorded cars are drawn; a line says where none are.
 
     Raises:
         EyasError: The map cannot be built, or the file not written.
     """
     scene = load_scene(name, seed)
-    driven: list[Points] = []
-    if tracks:
-        try:
-            driven = _driven(name, seed)
-        except EyasError as error:  # the map itself is fine
-            note = f"without the ways of its cars: {error}"
-            Console(stderr=True).print(note, markup=False, soft_wrap=True)
+    driven = _driven(name, seed) if tracks else []
+    if tracks and not driven:
+        note = "without the ways of its cars, which are recorded on first use"
+        Console(stderr=True).print(note, markup=False, soft_wrap=True)
     with atomic_path(path) as part:
         _picture(scene, driven, width, _notice(name)).save(part, format="PNG")
 
 
 def _driven(name: str, seed: int) -> list[Points]:
     recipe = MAPS.get(name)
-    shipped = recipe.shipped_traffic()
-    recording = find_recording(recipe.roads(seed), TrafficConfig(seed=None), shipped=shipped)
+    config, shipped = TrafficConfig(seed=None), recipe.shipped_traffic()
+    recording = known_recording(recipe.roads(seed), config, shipped)
+    if recording is None:
+        return []
     return [
         recording.position[low:high, car]
         for car in range(recording.actors)

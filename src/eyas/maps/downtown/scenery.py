@@ -19,13 +19,18 @@ from eyas.maps.downtown.layout import EXTENT, DowntownLayout
 from eyas.maps.downtown.roads import Grid
 from eyas.maps.plan.plan import BuildingPart
 from eyas.maps.plants import gardens
+from eyas.maps.street.kerbside import (
+    BAY_DEPTH,
+    BAY_LENGTH,
+    beside,
+    cars_in,
+    lines_between,
+    rows_along,
+)
 from eyas.maps.things.skyways import FLOORS_UNDER, Skyway
 
-_BAY_DEPTH, _BAY_LENGTH = 2.3, 6.1  # Size of a bay along a kerb [m]
 _FROM_CROSSING = 17.0  # Distance from the end of a street to the nearest bay [m]
-_BAYS = (4, 9)  # Bays in a row; between two rows the pavement reaches out to the kerb
-_BETWEEN = 11.0
-_OCCUPIED = 0.82
+_BAYS = (4, 9)  # Least number of bays in a row, and above the largest
 _GREAT_SPACING, _GREAT_BEYOND = 21.0, 2.6
 """Distances along the park of its great trees, and from the kerb to their trunks [m]."""
 _GREAT = 32
@@ -61,14 +66,13 @@ def _kerbs(network: RoadNetwork, railway: shapely.Geometry, rng: np.random.Gener
     cars: list[list[float]] = []
     for street in every:
         if not street.dividers and street not in slim and street.start[1:] == street.end[1:]:
-            for row in _rows(street, rng):
-                side = street.side
-                bays.append(_beside(row, side, _BAY_DEPTH, 0.0, row.length))
-                count = round(row.length / _BAY_LENGTH)
-                for k in range(count + 1):
-                    at = float(np.clip(k * _BAY_LENGTH, 0.05, row.length - 0.05))
-                    lines.append(_beside(row, side, _BAY_DEPTH - 0.1, at - 0.05, at + 0.05))
-                cars += _parked(row, side, count, rng)
+            kerb, side = shapely.LineString(street.right), street.side
+            span = _FROM_CROSSING, kerb.length - _FROM_CROSSING
+            for row in rows_along(kerb, span, _BAYS, rng):
+                bays.append(beside(row, side, (0.0, BAY_DEPTH), 0.0, row.length))
+                count = round(row.length / BAY_LENGTH)
+                lines += lines_between(row, side, count)
+                cars += cars_in(row, side, count, rng)
     slim_trees = _row_of_trees(slim, _SLIM_SPACING, _SLIM_BEYOND, 13.0)
     return Kerbs(
         bays=snapped(shapely.union_all(bays)),
@@ -104,50 +108,6 @@ def crossing_lamps(network: RoadNetwork, beyond: float) -> list[tuple[Points, fl
 
 def _is_along(street: Street, index: int) -> bool:
     return street.start[1:] == street.end[1:] == str(index + 1)
-
-
-def _rows(street: Street, rng: np.random.Generator) -> list[shapely.LineString]:
-    """Return the kerb along each row of bays."""
-    kerb = shapely.LineString(street.right)
-    made: list[shapely.LineString] = []
-    at = _FROM_CROSSING + float(rng.uniform(0.0, 6.0))
-    while True:
-        length = _BAY_LENGTH * int(rng.integers(*_BAYS))
-        if at + length > kerb.length - _FROM_CROSSING:
-            return made
-        if rng.random() < 0.86:
-            made.append(substring(kerb, at, at + length))
-        at += length + _BETWEEN
-
-
-def _parked(
-    row: shapely.LineString, side: float, count: int, rng: np.random.Generator
-) -> list[list[float]]:
-    """Return the cars in a row of bays, which face as the traffic beside them, some askew."""
-    start, end = shapely.get_coordinates(row)[[0, -1]]
-    along = unit(end - start)
-    across = side * np.array([along[1], -along[0]])
-    heading = float(exact.atan2(along[1], along[0]))
-    cars = []
-    for k in range(count):
-        here = rng.random() < _OCCUPIED
-        shift = (k + 0.5) * _BAY_LENGTH + rng.uniform(-0.35, 0.35)
-        place = start + shift * along + (1.18 + rng.uniform(-0.1, 0.1)) * across
-        turn = heading + rng.uniform(-0.055, 0.055)
-        if here:
-            cars.append([*rounded(place), float(turn)])
-    return cars
-
-
-def _beside(
-    line: shapely.LineString, side: float, far: float, low: float, high: float
-) -> shapely.Polygon:
-    """Return a rectangle beyond a straight kerb, counter-clockwise [m]."""
-    start, end = shapely.get_coordinates(line)[[0, -1]]
-    along = unit(end - start)
-    across = side * np.array([along[1], -along[0]])
-    corners = [(low, 0.0), (low, far), (high, far), (high, 0.0)][:: int(side)]
-    return shapely.Polygon([rounded(start + x * along + y * across) for x, y in corners])
 
 
 def _row_of_trees(rows: list[Street], spacing: float, beyond: float, clear: float) -> Points:

@@ -82,6 +82,10 @@ class Survey:
     """Width of others along all streets [m]; 0: there are none."""
     signals: tuple[str, ...] = ()
     """Edges of the network that end at a traffic light."""
+    parking: dict[str, list[Point]] = field(default_factory=dict)
+    """Parts of the kerb of each edge of the network along which cars park, from and to [m]."""
+    stops: list[Point] = field(default_factory=list)
+    """Bus stops [m]."""
     crossing_paint: PaintColour = "yellow"
     """Colour of the bars of crossings."""
     middle_paint: PaintColour = "white"

@@ -31,6 +31,7 @@ from eyas.engine.core.files import flushed, refusals, sum_of, write_atomic
 from eyas.engine.core.rng import stream
 from eyas.engine.envs.registration import register_map
 from eyas.engine.state.roads import RoadGraph, RoadNetwork
+from eyas.engine.terminal.counts import many
 from eyas.engine.terminal.progress import sumo_progress
 from eyas.engine.traffic.library import record_canonical
 from eyas.engine.traffic.net_file import (
@@ -55,6 +56,7 @@ from eyas.maps.osm.features import Survey
 from eyas.maps.osm.houses import buildings_beyond, houses_of
 from eyas.maps.osm.land import add_land
 from eyas.maps.osm.paint_colours import usual_paint
+from eyas.maps.osm.parking import add_parking
 from eyas.maps.osm.reader import Bounds, OsmData, covered, no_streets, read_osm
 from eyas.maps.osm.rings import OsmShapes
 from eyas.maps.osm.streets import is_street, osm_network, street_file
@@ -97,9 +99,9 @@ class Report:
         """Return the report for people."""
         width, height = self.size
         made = [
-            f"{self.name}: {width:.0f} x {height:.0f} m, {self.lanes} lanes, {self.signals} "
-            f"traffic lights, {self.buildings} buildings, {self.trees} trees, "
-            f"in {self.seconds:.0f} s",
+            f"{self.name}: {width:.0f} x {height:.0f} m, {many(self.lanes, 'lane')}, "
+            f"{many(self.signals, 'traffic light')}, {many(self.buildings, 'building')}, "
+            f"{many(self.trees, 'tree')}, in {self.seconds:.0f} s",
             f"kept in {self.folder}; use it with --map {shlex.quote(self.known_as)}",
         ]
         for word, counted in (("guessed", self.guessed), ("odd tags", self.odd),
@@ -134,6 +136,7 @@ def run(
     bounds: Bounds | None = None,
     drive_on: str | None = None,
     record: bool = True,
+    parked: bool = True,
     overwrite: bool = False,
 ) -> Report:
     """Import a file of OpenStreetMap.
@@ -145,6 +148,7 @@ def run(
         bounds: Area to import, in degrees; None: all that the file covers.
         drive_on: `left` or `right`; None: as the file says, or else as usual at the place.
         record: Whether the traffic is recorded now; otherwise on first use.
+        parked: Whether cars park along the kerbs.
         overwrite: Whether a map of that name is replaced.
 
     Raises:
@@ -158,7 +162,7 @@ def run(
     data = read_osm(path)
     place = _place(data, bounds, str(path))
     streets = _streets(data, place, _side(data, place, drive_on, report), report)
-    survey = survey_of(data, place, streets, report)
+    survey = survey_of(data, place, streets, report, parked=parked)
     origin = Origin(
         name, f"Imported from OpenStreetMap: {path.name}", path.name,
         round((place.projection.longitude + 180.0) % 360.0 - 180.0, 7),
@@ -297,8 +301,13 @@ def _streets(data: OsmData, place: Place, side: str, report: Report) -> Streets:
     return Streets(graph, net, network)
 
 
-def survey_of(data: OsmData, place: Place, streets: Streets, report: Report) -> Survey:
-    """Return everything but the streets, and count in the report what is guessed or left out."""
+def survey_of(
+    data: OsmData, place: Place, streets: Streets, report: Report, *, parked: bool = True
+) -> Survey:
+    """Return everything but the streets, and count in the report what is guessed or left out.
+
+    `parked`: whether cars park along the kerbs.
+    """
 
     def odd(key: str) -> None:
         report.odd[key] += 1
@@ -311,6 +320,8 @@ def survey_of(data: OsmData, place: Place, streets: Streets, report: Report) -> 
     report.left_out["buildings beyond the area"] += buildings_beyond(data, place.limits)
     report.left_out += Counter()  # drops what there was none of
     add_land(survey, shapes, odd, stream(0, "imported tree rows"))
+    if parked:
+        add_parking(survey, shapes, streets.network)
     # Without the lines in which sidewalks of bridges meet others.
     pavement = snapped(pavement_area(streets.net))
     survey.pavement = shapely.MultiPolygon(polygons_of(pavement))
@@ -369,4 +380,4 @@ def recorded(streets: Streets, folder: Path, *, record: bool) -> str:
         return coverage(RecordingFile.read(folder / TRAFFIC_FILE).load(), streets.network)
     except EyasError as error:
         Console(stderr=True).print(f"no traffic recorded: {error}", markup=False, soft_wrap=True)
-        return "traffic: none recorded; targets that walk need none: --set target=PEDESTRIAN"
+        return "traffic: none recorded; targets that walk need none: --set target=Pedestrian"

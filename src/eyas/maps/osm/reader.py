@@ -136,6 +136,8 @@ def read_osm(path: Path) -> OsmData:
             f"{path}: not an OpenStreetMap file (.osm, .osm.gz, .osm.bz2 or .osm.pbf)"
         )
     if not data.places:
+        if _is_lanelet2(data):
+            raise no_streets(data, str(path))
         raise DataFileError(f"{path}: has no nodes, so there is nothing to import")
     _unroll(data)
     return data
@@ -189,12 +191,15 @@ def covered(data: OsmData, asked: Bounds | None, source: str) -> Bounds:
 
 def no_streets(data: OsmData, source: str) -> DataFileError:
     """Return the error about a file without streets for cars."""
-    lanelets = any(one.tags.get("type") == "lanelet" for one in data.relations)
-    if lanelets:
+    if _is_lanelet2(data):
         return DataFileError(f"{source}: is a map of Lanelet2, which is not read")
     return DataFileError(
         f"{source}: has no streets for cars there (ways with the tag 'highway' and places)"
     )
+
+
+def _is_lanelet2(data: OsmData) -> bool:
+    return any(one.tags.get("type") == "lanelet" for one in data.relations)
 
 
 def _with_drawn(data: OsmData, bounds: Bounds) -> Bounds:
@@ -277,6 +282,8 @@ def _take(element: ElementTree.Element, data: OsmData) -> None:
     number = int(element.attrib["id"])
     tags: Tags = {tag.attrib["k"]: tag.attrib["v"] for tag in element.iter("tag")}
     if element.tag == "node":
+        if element.get("lon") == element.get("lat") == "":
+            return  # of maps of Lanelet2 in metres
         place = float(element.attrib["lon"]), float(element.attrib["lat"])
         if not _on_earth(*place):
             raise ValueError(f"node {number} lies at {place}, not on the earth")

@@ -140,7 +140,10 @@ def _footways(plan: p.MapPlan, network: RoadNetwork) -> Footways:
         painted = [markings.crossings_of(network, layer.paint) for layer in roads]
         lines = np.concatenate([np.zeros((0, 2, 2)), *painted])
         return Footways(np.zeros((0, 2)), np.zeros(1, np.int32), lines, ("",) * len(lines))
-    areas = [layer.area for layer in roads]
+    areas = [
+        layer.area if layer.bays is None else shapely.union(layer.area, _grown(layer.bays))
+        for layer in roads
+    ]
     solid = [shapely.geometry.polygon.orient(part) for area in areas for part in polygons_of(area)]
     rings = (ring for part in solid for ring in (part.exterior, *part.interiors))
     kerbs = [shapely.get_coordinates(ring) for ring in rings]
@@ -151,6 +154,11 @@ def _footways(plan: p.MapPlan, network: RoadNetwork) -> Footways:
         crossings=np.array(walks.lines, np.float64).reshape(-1, 2, 2),
         lights=walks.lights or ("",) * len(walks.lines),
     )
+
+
+def _grown(bays: shapely.Geometry) -> shapely.Geometry:
+    """Return bays [m] that overlap the asphalt beside them, beyond the rounding of both."""
+    return shapely.buffer(bays, 0.01, join_style="mitre")
 
 
 def _buildings(work: _Work, layer: p.Buildings) -> None:

@@ -70,6 +70,9 @@ CITY_KERBS: Final = (
 )
 """Along the kerbs of cities; behind the pavement is lawn, or more pavement."""
 
+TOWN_KERBS: Final = CITY_KERBS[:4]
+"""Along the kerbs of towns of which only some is known: drains, leaves, litter, signs."""
+
 VILLAGE_KERBS: Final = (
     _DRAINS,
     _LEAVES,

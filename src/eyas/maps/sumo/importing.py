@@ -40,6 +40,7 @@ from eyas.maps.osm.importing import (
 )
 from eyas.maps.osm.importing import Place as Area
 from eyas.maps.osm.paint_colours import usual_paint
+from eyas.maps.osm.parking import everywhere
 from eyas.maps.osm.reader import read_osm
 from eyas.maps.plan.plan import MapPlan, Roads
 from eyas.maps.sumo.files import Place, SumoFiles, configured, demand_of, moved, place_of
@@ -73,6 +74,7 @@ def run(
     out: Path | None = None,
     buildings: bool | Path = True,
     record: bool = True,
+    parked: bool = True,
     overwrite: bool = False,
 ) -> Report:
     """Import a network of SUMO.
@@ -87,6 +89,8 @@ def run(
         buildings: Whether houses are made along the streets, of which the files say nothing; or a
             file of OpenStreetMap, whose buildings, trees and grounds are those of the map.
         record: Whether usual traffic is recorded now; otherwise on first use.
+        parked: Whether cars park along the kerbs: where a file of OpenStreetMap says so or it is
+            usual, and without one along all slow streets.
         overwrite: Whether a map of that name is replaced.
 
     Raises:
@@ -123,10 +127,11 @@ def run(
     title, source = f"Imported from SUMO: {net_path.name}", net_path.name
     origin = Origin(name, title, source, longitude, latitude, (width, height))
     if isinstance(buildings, Path):
-        survey = _surveyed(buildings, place, made, report)
+        survey = _surveyed(buildings, place, made, report, parked=parked)
     else:
         survey = _survey(made, usual_paint(longitude or 0.0, latitude or 0.0))
         survey.houses = _houses(network, survey) if buildings else []
+        survey.parking = everywhere(network) if parked and survey.houses else {}
     report.size, report.lanes, report.signals = origin.size, len(network.lane_width), len(
         net.programs
     )  # fmt: skip
@@ -151,7 +156,7 @@ def run(
     return report
 
 
-def _surveyed(path: Path, place: Place, made: Streets, report: Report) -> Survey:
+def _surveyed(path: Path, place: Place, made: Streets, report: Report, *, parked: bool) -> Survey:
     """Return what a file of OpenStreetMap knows of a network's place besides its streets."""
     if place.projection is None:
         raise DataFileError(
@@ -177,7 +182,7 @@ def _surveyed(path: Path, place: Place, made: Streets, report: Report) -> Survey
         (2.0 * x, 2.0 * y),
     )
     report.notices = ("© OpenStreetMap contributors",)
-    return survey_of(data, area, made, report)
+    return survey_of(data, area, made, report, parked=parked)
 
 
 def _survey(made: Streets, paint: tuple[PaintColour, PaintColour]) -> Survey:

@@ -12,6 +12,7 @@ from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.world.build.materials import material
+from eyas.engine.world.build.millimetres import rounded, unit
 from eyas.engine.world.build.placed import Placed
 from eyas.engine.world.roads.areas import polygons_of, road_area, streets
 from eyas.engine.world.street import signals
@@ -22,7 +23,13 @@ from eyas.maps.buildings.parts import rings
 from eyas.maps.land import ground, outskirts
 from eyas.maps.land.relief import relief_of
 from eyas.maps.osm.features import Survey
-from eyas.maps.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
+from eyas.maps.plan.library import (
+    CAR_KINDS,
+    CLUTTER_KINDS,
+    FURNITURE_KINDS,
+    STREET_KINDS,
+    plant_kinds,
+)
 from eyas.maps.plan.plan import (
     BuildingPart,
     Buildings,
@@ -43,6 +50,7 @@ from eyas.maps.plan.plan import (
 )
 from eyas.maps.plants import gardens, trees
 from eyas.maps.street.car_parks import bays_in
+from eyas.maps.street.dressing import TOWN_KERBS, DressedGround, along_kerbs
 from eyas.maps.street.furniture import FURNITURE, furniture_along
 from eyas.maps.street.lamps import BEYOND_KERB, POLE_RADIUS, lit_by
 from eyas.maps.street.parked_cars import CARS
@@ -108,6 +116,9 @@ _WIDE = 3.5  # Width of pavements from which things may stand anywhere on them [
 _AT_KERB = 1.3  # On narrower ones they stand nearer to the kerb [m]
 _EVERY = 62.0  # Distance from one lamp to the next along a kerb [m]
 _APART = 24.0  # Least distance between two lamps [m]
+_CLEAR = 1.3  # Room around furniture [m]
+_STOP_SIGN, _FROM_KERB = 0.3, 12.0
+"""Distance from a kerb to the sign of a bus stop, and largest one to where it is mapped [m]."""
 _FROM_END = 8.0  # Least distance of lamps from the end of a street [m]
 
 
@@ -127,25 +138,29 @@ def completed(
         return plan
     level = _level(network, known)
     layers = [_levelled(one, level) if isinstance(one, Hills) else one for one in plan.layers]
-    town = lay_out(network, known, plan.size, _occupied(layers, seed))
+    town = lay_out(network, known, plan.size, _occupied(layers, seed), stream(seed, "town kerbs"))
     buildings = [building_of(house, seed) for house in town.houses]
     # The largest occluders come first: they are drawn first, so less is drawn twice.
     buildings.sort(key=lambda one: -_outside(one.parts[0]))
     bays, cars = _parked(town, stream(seed, "town cars"))
+    bays += town.kerbside.lines
+    cars += _at_kerbs(town, stream(seed, "town kerb cars"))
     lights = _signals(network, town, known)
     poles = [shapely.Point(one.x, one.y).buffer(1.0) for one in lights]
     wet, ends = town.ground["water"], kept_free(town.crosswalks)
-    taken = shapely.union_all([town.roads, town.built, wet, *poles, ends])
+    taken = shapely.union_all([town.roads, town.kerbside.bays, town.built, wet, *poles, ends])
     places = known.lamps or _usual_lamps(network, taken, stream(seed, "town lamps"))
     lamps = _lamps(network, places, taken)
     taken = shapely.union_all([taken, *shapely.buffer(shapely.points(lit_by(lamps)), 4.0)])
     rng = stream(seed, "town furniture")
     furnished = furniture_along(network, _room_to_furnish(town), taken, KERB_HEIGHT, rng)
+    dressed = _dressing(network, known, town, taken, furnished, stream(seed, "town clutter"))
     green = _greenery(town, known, stream(seed, "town plants"))
     ours = (
         *(ThingKind(name=name, make="street tree", variant=k, chance="town trees")
           for k, name in enumerate(_TREES)),
         *plant_kinds("town gardens"), *STREET_KINDS[1:], *FURNITURE_KINDS, *CAR_KINDS,
+        *CLUTTER_KINDS,
         ThingKind(name="traffic light", make="dark traffic light"),
     )  # fmt: skip
     given = {kind.name for kind in plan.library}
@@ -163,6 +178,7 @@ def completed(
             things(lights, ("traffic light",)),
             things(lamps, ("street lamp",)),
             things(furnished, tuple(FURNITURE)),
+            things(dressed),
             things(green, tuple(kind.name for kind in plant_kinds(""))),
         ),
         walkways=Walkways(
@@ -225,9 +241,13 @@ def _ground(
     parking = ground.asphalt(town.ground["parking"], light=True)
     made: list[Layer] = [
         Roadway(
-            area=town.roads, paint=paint, wear=Chance(stream="town road wear"), worn_from=_WORN_FROM
+            area=town.roads,
+            bays=None if town.kerbside.bays.is_empty else town.kerbside.bays,
+            paint=paint,
+            wear=Chance(stream="town road wear"),
+            worn_from=_WORN_FROM,
         ),
-        Paved(area=town.pavement, beside=town.roads),
+        Paved(area=town.pavement, beside=_asphalt(town)),
         GroundCover(kind=ObjectClass.ROAD, pieces=(parking,)),
     ]
     for name, (kind, covers) in _COVERS.items():
@@ -284,11 +304,62 @@ def _signals(network: RoadNetwork, town: Town, known: Survey) -> list[Placed]:
     return made
 
 
+def _asphalt(town: Town) -> shapely.Geometry:
+    """Return the streets with the bays along them [m]."""
+    bays = town.kerbside.bays
+    return town.roads if bays.is_empty else shapely.union(town.roads, bays)
+
+
+def _dressing(
+    network: RoadNetwork,
+    known: Survey,
+    town: Town,
+    taken: shapely.Geometry,
+    furnished: Sequence[Placed],
+    rng: np.random.Generator,
+) -> list[Placed]:
+    """Return signs, bus stops and what lies about along the kerbs, clear of all else."""
+    beside = np.reshape([(one.x, one.y) for one in furnished], (-1, 2))
+    thin = shapely.buffer(shapely.points(beside), _CLEAR, quad_segs=2)
+    walks = shapely.difference(town.pavement, shapely.union_all([taken, *thin]))
+    asphalt = shapely.difference(town.roads, shapely.buffer(town.kerbside.bays, 0.3))
+    for area in (walks, asphalt):
+        shapely.prepare(area)
+    grounds = {"road": DressedGround(asphalt, 0.0), "pavement": DressedGround(walks, KERB_HEIGHT)}
+    stops = _bus_stops(network, known, walks)
+    clear = [shapely.Point(one.x, one.y).buffer(1.0) for one in stops]
+    if clear:
+        left = shapely.difference(walks, shapely.union_all(clear))
+        shapely.prepare(left)
+        grounds["pavement"] = DressedGround(left, KERB_HEIGHT)
+    return [*along_kerbs(network, grounds, TOWN_KERBS, rng), *stops]
+
+
+def _bus_stops(network: RoadNetwork, known: Survey, walks: shapely.Geometry) -> list[Placed]:
+    """Return the signs of bus stops, at the kerbs that are nearest to them."""
+    every = [street for street in streets(network) if len(street.right) >= 2]
+    kerbs = [shapely.LineString(street.right) for street in every]
+    tree, made = shapely.STRtree(kerbs), []
+    for place in known.stops if kerbs else ():
+        point = shapely.Point(place)
+        which = int(tree.nearest(point))
+        along = kerbs[which].project(point)
+        low, high = max(along - 0.5, 0.0), min(along + 0.5, kerbs[which].length)
+        ends = shapely.get_coordinates(kerbs[which].interpolate(np.array([low, high])))
+        inwards = every[which].inwards(unit(ends[1] - ends[0]))
+        here = shapely.get_coordinates(kerbs[which].interpolate(along))[0]
+        foot = rounded(here - _STOP_SIGN * inwards)
+        if kerbs[which].distance(point) < _FROM_KERB and shapely.contains_xy(walks, *foot):
+            turn = float(exact.atan2(inwards[1], inwards[0]) - np.pi / 2)
+            made.append(Placed.at("bus stop", foot, KERB_HEIGHT, turn))
+    return made
+
+
 def _room_to_furnish(town: Town) -> shapely.Geometry:
     """Return the pavements [m], of narrow ones only the side at the kerb, so that one can pass."""
     inside = shapely.buffer(town.pavement, -_WIDE / 2, join_style="mitre")
     wide = shapely.buffer(inside, _WIDE / 2, join_style="mitre")
-    at_kerb = shapely.buffer(town.roads, _AT_KERB, quad_segs=3)
+    at_kerb = shapely.buffer(_asphalt(town), _AT_KERB, quad_segs=3)
     return shapely.union(
         shapely.intersection(town.pavement, wide), shapely.intersection(town.pavement, at_kerb)
     )
@@ -335,7 +406,8 @@ def _lamps(
 
 def _greenery(town: Town, known: Survey, rng: np.random.Generator) -> list[Placed]:
     """Return trees, and hedges along houses."""
-    solid = shapely.union_all([town.roads, town.built, town.ground["water"], town.ground["rail"]])
+    beside = town.ground["water"], town.ground["rail"]
+    solid = shapely.union_all([_asphalt(town), town.built, *beside])
     occupied = shapely.buffer(solid, _TRUNK, quad_segs=2)
     shapely.prepare(occupied)
     told = np.array(known.trees, np.float64).reshape(-1, 3)
@@ -376,3 +448,11 @@ def _parked(town: Town, rng: np.random.Generator) -> tuple[list[shapely.Polygon]
                 east, north = x + exact.normal(rng, 0, 0.06), y + exact.normal(rng, 0, 0.06)
                 made.append(Placed(car, east, north, 0.0, way, float(rng.uniform(0.94, 1.04))))
     return lines, made
+
+
+def _at_kerbs(town: Town, rng: np.random.Generator) -> list[Placed]:
+    """Return the cars in the bays along kerbs."""
+    return [
+        Placed(CARS[int(rng.integers(len(CARS)))], x, y, 0.0, turn, float(rng.uniform(0.94, 1.04)))
+        for x, y, turn in town.kerbside.cars.tolist()
+    ]

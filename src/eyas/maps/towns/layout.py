@@ -14,7 +14,8 @@ from eyas.engine.world.roads.curves import TURN
 from eyas.lanes import exact
 from eyas.maps.osm.features import AREA_KINDS, House, Survey
 from eyas.maps.towns.buildings import is_small
-from eyas.maps.towns.crossings import Crosswalk, crosswalks_of
+from eyas.maps.towns.crossings import Crosswalk, crosswalks_of, kept_free
+from eyas.maps.towns.kerbs import Kerbside, kerbside
 
 _CLEARANCE = 4.6  # What begins higher than this may stand over a street [m]
 
@@ -32,6 +33,7 @@ _CORNER_WALK = 2.0  # Width of the pavement round a corner [m]
 _SHARP = 0.5  # Angle of a sharp bend of a street, at least [rad]
 _BEND = 7.0  # Radius of the surroundings of a bend [m]
 _SLIVER = 0.3  # Smaller additions are left out [m^2]
+_TREE, _LAMP = 0.8, 0.4  # Distance from parking bays to trunks and lamps [m]
 _NEEDLE = 0.02  # Slivers narrower than twice this do not count as asphalt [m]
 
 
@@ -58,6 +60,7 @@ class Town:
     houses: list[House]  # All buildings, without what would stand on streets
     gardens: list[shapely.Polygon]  # Footprints of houses with gardens [m]
     built: shapely.Geometry  # Footprints of the buildings [m]
+    kerbside: Kerbside  # Parking along the kerbs
 
 
 def lay_out(
@@ -65,6 +68,7 @@ def lay_out(
     features: Survey,  # What the map tells besides
     size: tuple[float, float],  # Extent of the floor [m]
     given: Occupied,  # What is there already
+    rng: np.random.Generator,  # Of the parking along kerbs
 ) -> Town:
     """Return which ground of a town is what."""
     extent = shapely.box(-size[0] / 2, -size[1] / 2, size[0] / 2, size[1] / 2)
@@ -85,7 +89,13 @@ def lay_out(
     crosswalks, islands = crosswalks_of(network, roads, walked, features)
     walked = shapely.union(walked, shapely.intersection(islands, extent))
     pavement = _clean(shapely.difference(walked, shapely.union(roads, built)))
-    taken = shapely.union_all([roads, pavement, given.covered])
+    parked = _kerbside(network, features, roads, pavement, crosswalks, extent, given, built, rng)
+    if not parked.bays.is_empty:
+        walked = shapely.union(walked, parked.walks)
+        pavement = _clean(
+            shapely.difference(walked, shapely.union_all([roads, parked.bays, built]))
+        )
+    taken = shapely.union_all([roads, parked.bays, pavement, given.covered])
     covered = taken
     ground: dict[str, shapely.Geometry] = {}
     for kind in AREA_KINDS:
@@ -110,7 +120,32 @@ def lay_out(
         houses=houses,
         gardens=[one.shape for one in houses if is_small(one) and one.shape.area > 40.0],
         built=built,
+        kerbside=parked,
     )
+
+
+def _kerbside(
+    network: RoadNetwork,
+    features: Survey,
+    roads: shapely.Geometry,
+    pavement: shapely.Geometry,
+    crosswalks: Sequence[Crosswalk],
+    extent: shapely.Polygon,
+    given: Occupied,
+    built: shapely.Geometry,
+    rng: np.random.Generator,
+) -> Kerbside:
+    """Return the parking along kerbs, clear of all that is known to be beside them."""
+    solid = [area.shape for area in features.areas if area.kind in ("water", "rail", "parking")]
+    trees = shapely.points(np.reshape([tree[:2] for tree in features.trees], (-1, 2)))
+    lamps = shapely.points(np.reshape(features.lamps, (-1, 2)))
+    kept = shapely.union_all(
+        [
+            *(built, given.built, given.covered, kept_free(crosswalks), *solid),
+            *(*shapely.buffer(trees, _TREE), *shapely.buffer(lamps, _LAMP)),
+        ]
+    )
+    return kerbside(network, features.parking, roads, pavement, kept, extent, rng)
 
 
 def _lanes(network: RoadNetwork) -> shapely.Geometry:
