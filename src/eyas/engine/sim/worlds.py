@@ -14,7 +14,7 @@ from eyas.engine.state.motion import ActorState
 from eyas.engine.state.scene import ACTOR_OBJECT, DRONE_CLASS
 from eyas.engine.state.snapshot import CameraState
 from eyas.engine.targets.catalogue import KINDS
-from eyas.engine.targets.kind import Colour, Looks
+from eyas.engine.targets.kind import HIDDEN, Colour, Looks
 from eyas.engine.targets.looks import LookSampler
 from eyas.engine.traffic.interpolation import sample_before
 from eyas.lanes import interpreted
@@ -90,7 +90,13 @@ class Worlds:
             lights = NearLights(assets.signals, float(far[assets.signals.first_part :].max()))
         wet = assets.lighting.spray > 0.0
         self._near = VisibleActors(
-            assets.traffic.motion, rigs, self.looks, reach, spray=wet, lights=lights
+            assets.traffic.motion,
+            rigs,
+            self.looks,
+            reach,
+            spray=wet,
+            lights=lights,
+            known=getattr(assets.traffic, "own", None),
         )
 
     @property
@@ -169,7 +175,9 @@ class Worlds:
         """
         actors = ActorState.create(1, self._assets.traffic.actors)
         self._assets.traffic.at(np.array([tick * PHYSICS_STEP]), actors)
-        return actors, self.looks.model[self.of[tracker]]
+        models = self.looks.model[self.of[tracker]]
+        actors.present[0] &= models != HIDDEN
+        return actors, models
 
     def lamps_around(
         self,

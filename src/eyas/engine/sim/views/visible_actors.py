@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.camera.poses import Moving
-from eyas.engine.sim.views.actor_bounds import ActorBounds, bounds_of, made_row
+from eyas.engine.sim.views.actor_bounds import ActorBounds, bounds_of, made_row, unbounded_after
 from eyas.engine.sim.views.near_actors import (
     CAMERA,
     Entry,
@@ -29,8 +29,9 @@ from eyas.engine.sim.views.near_lights import NearLights
 from eyas.engine.sim.views.spray import spray_of, throwing
 from eyas.engine.state.draw import DrawList
 from eyas.engine.state.motion import ActorState, Motion
+from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.state.snapshot import CameraState
-from eyas.engine.targets.kind import Group, Looks
+from eyas.engine.targets.kind import HIDDEN, Group, Looks
 from eyas.engine.targets.rig import Rigs
 from eyas.engine.traffic.interpolation import interpolate_actor, sample_before
 from eyas.lanes import PackedBundle, compiled
@@ -109,15 +110,21 @@ class VisibleActors:
         spray: bool = False,  # Whether vehicles throw up water
         # The lights of signals, which are listed behind the actors; None: there are none
         lights: NearLights | None = None,
+        # Number of actors whose motion is known in advance, all that worlds may hide among the
+        # others and in their places; None: all, and no world hides any
+        known: int | None = None,
     ) -> None:
-        self._lights = lights
+        self._lights, self._looks = lights, None if known is None else looks
         self._throws = throwing(rigs.kinds) if spray else None
         kinds, actor = kind_table(rigs, reach, spray=spray), column_actors(rigs)
         self._rigs, self._signal = rigs, motion.lamps.size > 0
         self._reach = np.minimum(kinds.reach, _LONGEST)
+        bounds = bounds_of(motion, actor)
+        if known is not None:
+            unbounded_after(known, bounds, motion)
         self._given = (
             PackedBundle(motion),
-            PackedBundle(bounds_of(motion, actor)),
+            PackedBundle(bounds),
             PackedBundle(kinds),
             PackedBundle(looks),
         )
@@ -187,12 +194,33 @@ class VisibleActors:
         query.rotation[:views] = cameras.rotation[order]
         query.field_of_view[:views] = cameras.field_of_view[order]
         self._list()
+        if self._looks is not None:
+            self._leave_out_hidden(self._looks)
         if self._lights is not None:
             self._lights.list()
         entries, slots = self._listed.needed.tolist()
         if entries > self._size.entries or slots > self._size.slots:
             self._grow(_Size(0, 0, entries, slots))
             self._list_for(worlds, time, row, cameras, aspect)
+
+    def _leave_out_hidden(self, looks: Looks) -> None:
+        """Take those out of the list that their worlds hide; their slots stay empty."""
+        listed, slots = self._listed, self._size.slots
+        count = min(int(listed.needed[0]), self._size.entries)
+        if count < listed.needed[0] or listed.needed[1] > slots:
+            return  # it is listed again, with room for all
+        slot = listed.slot[:count]
+        row = slot // max(slots, 1)
+        actor = listed.object_id[row, slot % max(slots, 1)] - ACTOR_OBJECT
+        kept = looks.model[self._query.world[row], actor] != HIDDEN
+        if kept.all():
+            return
+        left = int(np.count_nonzero(kept))
+        for array in (*listed.state, *listed.looks):
+            array[0, :left] = array[0, :count][kept]
+        listed.slot[:left] = slot[kept]
+        listed.end[:] = np.concatenate([[0], np.cumsum(kept)])[listed.end]
+        listed.needed[0] = left
 
     def _pose(self) -> None:
         """Let the rigs pose the actors, those of each kind at once."""
