@@ -79,6 +79,10 @@ class Outcome(NamedTuple):
     reason: NDArray[np.int64]  # `eyas.engine.task.done.DoneReason` of its end, shape (N,).
 
 
+TARGET = "target"
+"""Name among the terms of the reward of what targets get that agents move."""
+
+
 class Evading:
     """Actions and rewards of targets that agents move, of an action of each.
 
@@ -268,6 +272,8 @@ class Batch:
             running = running & ~result.done
             if not running.any():
                 break
+        if evading is not None:
+            terms[TARGET] = evading.reward
         if self.config.verbose:
             snapshot = self._simulation.snapshot
             self._journal.step(snapshot)

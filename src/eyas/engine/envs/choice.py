@@ -91,6 +91,17 @@ def chosen_settings(source: Source, **choices: Unpack[EnvChoices]) -> EyasConfig
     return updated(config, {"done": {"total_steps": limit * steps_per_action(config)}})
 
 
+def targets_act(agents: str) -> bool:
+    """Return whether targets are agents beside the trackers.
+
+    Raises:
+        ConfigError: There are no such agents.
+    """
+    if agents not in ("tracker", "tracker+target"):
+        raise ConfigError(f"agents: {agents!r} is not allowed: 'tracker' or 'tracker+target'")
+    return agents == "tracker+target"
+
+
 def evading_settings(config: EyasConfig) -> EyasConfig:
     """Return the settings of an environment whose targets are agents.
 

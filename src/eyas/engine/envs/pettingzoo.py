@@ -20,6 +20,7 @@ from eyas.engine.envs.choice import (
     evading_settings,
     first_seed,
     settings_of_kinds,
+    targets_act,
 )
 from eyas.engine.envs.evader_view import evader_actions
 from eyas.engine.envs.information import Info, by_term, of_one
@@ -79,9 +80,7 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
         overlay: bool = False,
         **choices: Unpack[EnvChoices],
     ) -> None:
-        if agents not in ("tracker", "tracker+target"):
-            raise ConfigError(f"agents: {agents!r} is not allowed: 'tracker' or 'tracker+target'")
-        evading = agents == "tracker+target"
+        evading = targets_act(agents)
         if num_drones is None:
             num_drones = 1 if evading else 2
         if num_drones < 1:

@@ -155,6 +155,7 @@ class Evaders:
                 looks.model[world, traffic.own + tracker] = looks.model[world, actor]
                 looks.colour[world, traffic.own + tracker] = looks.colour[world, actor]
                 looks.model[world, actor], self._taken[tracker] = HIDDEN, actor
+                self._worlds.stand_in[traffic.own + tracker] = actor
                 tick = int(self._snapshot.episodes.tick[tracker])
                 traffic.take_over(tracker, actor, tick)
             self._follow(tracker, traffic.own + owner)

@@ -53,6 +53,7 @@ class Worlds:
         lasting: Whether the time of each world continues when an episode ends, shape (W,).
         looks: Models and colours of the actors in all W worlds; they change in place.
         look_table: What these are sampled from.
+        stand_in: Recorded actor as whom each actor is drawn, shape (A,).
 
     Args:
         config: The settings.
@@ -78,8 +79,12 @@ class Worlds:
         self._any_lasting = bool(self.lasting.any())
         self._members = [np.flatnonzero(self.of == world) for world in range(len(first))]
         self._assets = assets
-        self.look_table = LookSampler(assets.traffic.motion.kind, config.traffic.colour).table
+        # Targets that are moved have the looks of those whose places they take.
+        known = getattr(assets.traffic, "own", None)
+        kinds = assets.traffic.motion.kind[:known]
+        self.look_table = LookSampler(kinds, config.traffic.colour).table
         worlds, actors = len(self.leader), assets.traffic.actors
+        self.stand_in = np.arange(actors)
         self.looks = Looks(
             np.zeros((worlds, actors), np.int32), np.ones((worlds, actors, 3), np.float32)
         )
@@ -96,7 +101,8 @@ class Worlds:
             reach,
             spray=wet,
             lights=lights,
-            known=getattr(assets.traffic, "own", None),
+            stand_in=None if known is None else self.stand_in,
+            known=known or 0,
         )
 
     @property
