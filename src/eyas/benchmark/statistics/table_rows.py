@@ -219,9 +219,8 @@ def _elo(records: Sequence[EpisodeRecord], protocol: Protocol) -> dict[str, Esti
     games = [each for each in records if each.variant in protocol.ratings]
     if not games:
         return {}
-    scores = [
-        1.0 if each.lost_after is None else each.lost_after / protocol.steps for each in games
-    ]
+    horizon = protocol.steps * protocol.period
+    scores = [min(each.watched / horizon, 1.0) for each in games]
     ratings = [protocol.ratings[each.variant] for each in games]
     return {"elo": elo_of(scores, ratings, clusters_in(games))}
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.engine.behaviours.evader import EvaderDriver
 from eyas.engine.behaviours.steering import RAYS
+from eyas.engine.core.rng import EpisodeKey, stream
 from eyas.engine.traffic.steering import TOP_SHARE
 from eyas.engine.traffic.ways import LEFT, RIGHT, STRAIGHT
 from eyas.lanes import exact
@@ -47,10 +48,6 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-def _column(names: tuple[str, ...], name: str) -> int:
-    return names.index(name)
-
-
 class FixedDrivers:
     """The fixed drivers of N targets, see `EvaderDriver`.
 
@@ -62,17 +59,19 @@ class FixedDrivers:
 
     def __init__(self, driver: EvaderDriver, count: int, *, walks: bool) -> None:
         self._walks, self._driver = walks, driver
-        self._rng: list[np.random.Generator | None] = [None] * count
+        self._key = np.zeros((count, 3), np.int64)  # See `EpisodeKey`
+        self._draws = np.zeros(count, np.int64)  # Random numbers that each has drawn
         self._turn = np.full(count, STRAIGHT)
         self._junction = np.full(count, -np.inf)
         self._until, self._clock = np.zeros((2, count))  # Time of the next decision, and now [s]
         self._mode = np.zeros(count, np.int64)  # 0: goes on; 1: brakes; 2: dashes
         self._heading = np.zeros(count)
 
-    def begin(self, rows: Integers, stream_of: Callable[[int], np.random.Generator]) -> None:
+    def begin(self, rows: Integers, key_of: Callable[[int], EpisodeKey]) -> None:
         """Begin the episodes of some targets, each with random numbers of its own."""
+        self._draws[rows] = 0
         for row in rows.tolist():
-            self._rng[row] = stream_of(row)
+            self._key[row] = key_of(row)
             self._until[row] = self._between(row, 2.0, 8.0)
         self._clock[rows], self._mode[rows], self._turn[rows] = 0.0, 0, STRAIGHT
         self._junction[rows] = -np.inf
@@ -176,9 +175,10 @@ class FixedDrivers:
         return float(turns[int(np.argmax(fits))])
 
     def _generator(self, row: int) -> np.random.Generator:
-        rng = self._rng[row]
-        assert rng is not None, "begin comes first"
-        return rng
+        """Return the generator of the next random number."""
+        self._draws[row] += 1
+        seed, tracker, episode = self._key[row].tolist()
+        return stream(seed, "evader", tracker, episode, int(self._draws[row]))
 
     def _between(self, row: int, low: float, high: float) -> float:
         return float(self._generator(row).uniform(low, high))

@@ -45,7 +45,8 @@ class SteeredWalkers:
         self.at = np.zeros((count, 2))
         self.yaw, self.speed = np.zeros((2, count))
         self.top: Final = TOP_SHARE * habit.speed
-        self._obstacles, self._habit, self._radius = obstacles, habit, radius
+        self._blocked, self._reach = obstacles.blocked, obstacles.reach
+        self._habit, self._radius = habit, radius
 
     def begin(self, rows: Integers, place: Floats, yaw: Floats, speed: Floats) -> None:
         """Put some where they are, with headings [rad] and speeds [m/s]."""
@@ -77,7 +78,7 @@ class SteeredWalkers:
             next_ = self.at[rows[left]] + step[:, None] * np.stack(
                 [exact.cos(way), exact.sin(way)], axis=1
             )
-            free = ~self._obstacles.blocked(shapely.points(next_), self._radius)
+            free = ~self._blocked(shapely.points(next_), self._radius)
             here = left[free]
             place[here], goes[here] = next_[free], True
             turned[here] += detour
@@ -99,5 +100,5 @@ class SteeredWalkers:
         turns = 2.0 * np.pi / RAYS * np.arange(RAYS)
         headings = (self.yaw[rows, None] + turns).ravel()
         start = np.repeat(self.at[rows], RAYS, axis=0)
-        reach = self._obstacles.reach(start, headings, FARTHEST, self._radius)
+        reach = self._reach(start, headings, FARTHEST, self._radius)
         return np.asarray(reach.reshape(len(rows), RAYS))

@@ -48,11 +48,12 @@ from eyas.engine.task.done import DoneReason
 from eyas.engine.task.journal import Journal
 from eyas.engine.task.step_line import step_line
 from eyas.engine.task.terms import RewardTerms
+from eyas.engine.traffic.ways import Ways
 from eyas.lanes import BoundCall, CompiledCall, Kernel, PackedBundle
 
 _CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall, Kernel)
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
-_SHARED = (Assets, CpuRenderer, Lighting, Motion, ParkedObjects, Terrain)
+_SHARED = (Assets, CpuRenderer, Lighting, Motion, ParkedObjects, Terrain, Ways)
 _TABLES = (Fitted, SamplingRules, LightRules, LookTable, ModelTable)
 """Made of the settings and the catalogue, which may have grown in this process."""
 _BOUND = (BoundCall, PackedBundle)  # To the addresses of arrays, which stay

@@ -54,7 +54,8 @@ class EvaderTraffic:
         longest: int,  # Length of an episode in physics steps
         terrain: Terrain,
     ) -> None:
-        motion, self._source, self._terrain = source.motion, source, terrain
+        motion, self._terrain = source.motion, terrain
+        self.duration: Final = source.duration  # Last time of the traffic [s]; the first is 0
         self.own: Final = len(motion.kind)
         self.ticks: Final = round(1.0 / motion.rate / PHYSICS_STEP)
         wanted = min(longest // self.ticks + 1, motion.samples) + _BEFORE + _AFTER
@@ -95,11 +96,6 @@ class EvaderTraffic:
     def actors(self) -> int:
         """Number of actors."""
         return len(self.motion.kind)
-
-    @property
-    def duration(self) -> float:
-        """Last time of the traffic [s]; the first is 0."""
-        return self._source.duration
 
     def prepare(self, until: float) -> None:
         """Do nothing: what is recorded is known, and targets move by `write`."""

@@ -98,13 +98,13 @@ class Evaders:
 
         count = len(worlds.of)
         self._traffic, self._worlds, self._snapshot = traffic, worlds, snapshot
-        self._follow, self._scene, self._season = follow, assets.scene, config.world
+        self._follow, self._terrain = follow, assets.scene.terrain
         self._walks = config.target is not TargetName.SUMO_VEHICLE
         self.seen_names: Final = WALKER_SEEN if self._walks else CAR_SEEN
         self._walkers: Any = None
         self._cars: Any = None
         if self._walks:
-            self._walkers, self._ground = _walkers(assets.scene, config.target, count)
+            self._walkers, self._footing_at = _walkers(assets.scene, config.target, count)
             self.low, self.high = np.array([-np.pi, 0.0]), np.array([np.pi, self._walkers.top])
         else:
             place = config.world.map, config.world.seed
@@ -122,7 +122,6 @@ class Evaders:
         self._taken = np.full(count, -1, np.int64)  # Recorded actor whose place each has taken
         self._look_of = np.zeros(count, np.int32)  # Its model
         self._length = np.array([model.size[0] for model in MODELS])
-        self._around = ActorState.create(1, traffic.actors)
 
     def release(self, trackers: Integers) -> None:
         """Give recorded actors back their places, before new episodes are drawn."""
@@ -156,13 +155,17 @@ class Evaders:
                 looks.colour[world, traffic.own + tracker] = looks.colour[world, actor]
                 looks.model[world, actor], self._taken[tracker] = HIDDEN, actor
                 self._worlds.stand_in[traffic.own + tracker] = actor
-                tick = int(self._snapshot.episodes.tick[tracker])
-                traffic.take_over(tracker, actor, tick)
+                tick = self._snapshot.episodes.tick
+                if not self._worlds.lasting[world]:
+                    # It begins at a sample, up to a tenth of a second sooner than drawn, so that
+                    # the targets of a batch decide at the same steps: ten times as fast.
+                    tick[tracker] -= tick[tracker] % traffic.ticks
+                traffic.take_over(tracker, actor, int(tick[tracker]))
             self._follow(tracker, traffic.own + owner)
         own = np.array(sorted(first.values()), np.int64)
         self._set_out(own)
         if self._fixed is not None and len(own):
-            self._fixed.begin(own, lambda tracker: key_of(tracker).stream("evader"))
+            self._fixed.begin(own, key_of)
 
     def advance(self, steps: int, active: Mask | None) -> None:
         """Decide what the next physics steps of trackers need to know."""
@@ -195,7 +198,7 @@ class Evaders:
     def observe(self, trackers: Integers) -> Floats:
         """Return what the targets of trackers see, columns `seen_names`, shape (K, C)."""
         rows = self.owner[trackers]
-        return self._seen(trackers, rows)
+        return self._seen(trackers, rows, None)
 
     def _set_out(self, rows: Integers) -> None:
         """Begin to move where recorded actors were."""
@@ -213,31 +216,33 @@ class Evaders:
     def _step(self, rows: Integers) -> None:
         """Decide the next sample of targets."""
         traffic, period = self._traffic, 1.0 / self._traffic.motion.rate
+        others = None
+        if not self._walks:
+            others = self._others(rows, traffic.known[rows] * period)
         if self._fixed is not None:
-            self.actions[rows] = self._fixed.actions(rows, self._seen(rows, rows), period)
+            seen = self._seen(rows, rows, others)
+            self.actions[rows] = self._fixed.actions(rows, seen, period)
         wanted = np.clip(self.actions[rows], self.low, self.high)
         lamps = np.zeros(len(rows), np.uint8)
         if self._walks:
             steps: Steps = self._walkers.advance(rows, wanted[:, 0], wanted[:, 1], period)
-            height = self._ground.at(steps.place).height
+            height = self._footing_at(steps.place).height
         else:
             turn = _turns(wanted[:, 1])
             before = self._cars.speed[rows].copy()
-            others = self._others(rows, traffic.known[rows] * period)
+            assert others is not None
             steps = self._cars.advance(rows, wanted[:, 0], turn, others, period)
             slows = before - self._cars.speed[rows] > _BRAKES * period
             lamps[slows | (self._cars.speed[rows] < 0.1)] |= np.uint8(Lamp.BRAKE)
             near = self._cars.to_junction(rows) < _SIGNALS
             lamps[near & (turn == LEFT)] |= np.uint8(Lamp.LEFT)
             lamps[near & (turn == RIGHT)] |= np.uint8(Lamp.RIGHT)
-            height = reliefs(self._scene.terrain, steps.place)
+            height = reliefs(self._terrain, steps.place)
         traffic.write(rows, steps, height, lamps)
 
     def _others(self, rows: Integers, time: Floats) -> Others:
         """Return who is around cars at the times of each [s]."""
-        if len(self._around.present) < len(rows):
-            self._around = ActorState.create(len(rows), self._traffic.actors)
-        around = self._around.first(len(rows))
+        around = ActorState.create(len(rows), self._traffic.actors)
         self._traffic.at(time, around)
         model = self._worlds.looks.model[self._worlds.of[rows]]
         there = around.present & (model != HIDDEN)
@@ -255,8 +260,14 @@ class Evaders:
             there[each, near],
         )
 
-    def _seen(self, trackers: Integers, rows: Integers) -> Floats:
-        """Return what targets see of trackers, and of what is around them."""
+    def _seen(self, trackers: Integers, rows: Integers, others: Others | None) -> Floats:
+        """Return what targets see of trackers, and of what is around them.
+
+        Args:
+            trackers: Shape (K,).
+            rows: The trackers whose own these targets are, shape (K,).
+            others: What is around them, if that is known already.
+        """
         state, targets = self._snapshot.trackers, self._snapshot.targets
         yaw = targets.yaw[trackers]
         cosine, sine = exact.cos(yaw), exact.sin(yaw)
@@ -274,9 +285,10 @@ class Evaders:
             free = self._walkers.free(rows).T
             return np.stack([*own, top, cosine, sine, *free], axis=1)
         cars, turn = self._cars, _turns(self.actions[rows, 1])
-        time = self._traffic.known[rows] / self._traffic.motion.rate
         ahead = cars.ahead(rows, turn)
-        gap, pace = cars.leader(rows, ahead, self._others(rows, time))
+        if others is None:
+            others = self._others(rows, self._traffic.known[rows] / self._traffic.motion.rate)
+        gap, pace = cars.leader(rows, ahead, others)
         limit = cars.ways.limit[cars.piece[rows]]
         from eyas.engine.behaviours.evading import COVER_AT
 
@@ -326,4 +338,5 @@ def _walkers(scene: Scene, target: TargetName, count: int) -> tuple[Any, Any]:
     models = [MODELS[model] for model in models_of(kind_index(target.value))]
     breadth = max(float(exact.hypot(*model.size[:2])) for model in models)
     radius = 0.5 * breadth + ROOM
-    return SteeredWalkers(ground.solids, habit_of(target.value), radius, count), ground.surface
+    walkers = SteeredWalkers(ground.solids, habit_of(target.value), radius, count)
+    return walkers, ground.surface.at

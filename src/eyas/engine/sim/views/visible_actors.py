@@ -126,7 +126,8 @@ class VisibleActors:
         stand_in: NDArray[np.int64] | None = None,
         known: int = 0,
     ) -> None:
-        self._lights, self._stand_ins = lights, None
+        self._lights = lights
+        self._stand_ins: StandIns | None = None
         self._throws = throwing(rigs.kinds) if spray else None
         kinds, actor = kind_table(rigs, reach, spray=spray), column_actors(rigs)
         self._rigs, self._signal = rigs, motion.lamps.size > 0
