@@ -215,7 +215,7 @@ def elo_of(scores: ArrayLike, opponents: ArrayLike, clusters: Clusters) -> Estim
     low, high = float(rated.min()) - _MOST, float(rated.max()) + _MOST
 
     def expected(rating: float) -> Floats:
-        return 1.0 / (1.0 + np.exp(_ELO * (rated - rating)))
+        return 1.0 / (1.0 + exact.exp(_ELO * (rated - rating)))
 
     for _ in range(60):  # halves the interval to far below a point
         middle = 0.5 * (low + high)
