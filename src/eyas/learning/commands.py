@@ -39,8 +39,8 @@ def train(
         str | None,
         typer.Option(
             "--method",
-            help="How to teach (train.method): ppo, dagger, dagger+ppo, tracker, words, or "
-            "package.module:Class.",
+            help="How to teach (train.method): ppo, dagger, dagger+ppo, tracker, words, pursuit, "
+            "or package.module:Class.",
         ),
     ] = None,
     steps: Annotated[

@@ -232,7 +232,8 @@ class TrainConfig(Section):
     """By rewards (proximal policy optimisation), by a teacher (dataset aggregation), or by a
     teacher at first; `tracker`: the network of a tracker that follows what its first box shows,
     which `train.tracker` alone configures (docs/following-one-target.md); `words`: that of a
-    listener, which `train.words` alone configures (docs/following-words.md). Also
+    listener, which `train.words` alone configures (docs/following-words.md); `pursuit`: a tracker
+    and the driver of its target against each other (docs/pursuit.md). Also
     `package.module:Class`; two joined by `+` learn one after the other."""
     ppo: PpoConfig = PpoConfig()
     dagger: DaggerConfig = DaggerConfig()
@@ -365,6 +366,7 @@ ALGORITHMS: Registry[Callable[..., Any]] = Registry(
         "dagger": "eyas.learning.dagger:Dagger",
         "tracker": "eyas.learning.tracking.training:train",
         "words": "eyas.learning.words.training:train",
+        "pursuit": "eyas.learning.pursuit.training:train",
     },
     group="eyas.algorithms",
 )

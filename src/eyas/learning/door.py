@@ -11,6 +11,7 @@ HOUSE = House(
             "eyas-words": "eyas.learning:presets/eyas-words.json",
             "fast": "eyas.learning:presets/fast.json",
             "gc-vat": "eyas.learning:presets/gc-vat.json",
+            "pursuit": "eyas.learning:presets/pursuit.json",
             "paper": "eyas.learning:presets/paper.json",
         },
         "eyas.commands": {"train": "eyas.learning.commands:train"},

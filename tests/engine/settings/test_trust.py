@@ -24,6 +24,7 @@ from eyas.engine.trackers.kinds import tracker_of
 NAMING = {
     "world.map": {"world": {"map": "someones:IT"}},
     "reward.terms": {"reward": {"terms": {"someones:IT": 1.0}}},
+    "evader.reward": {"evader": {"reward": {"someones:IT": 1.0}}},
     "custom.path": {"custom": {"path": "someones:IT"}},
     "tracker.kind": {"tracker": {"kind": "someones:IT"}},
     "video.writers": {"video": {"writers": ["jpeg", "someones:IT"]}},

@@ -130,6 +130,8 @@ class Protocol:
     """Versions of each episode, with changes of the settings; none: there is one."""
     reference: str = ""
     """The variant from which the others' figure `fall` counts; none: there is no such figure."""
+    ratings: Mapping[str, float] = field(default_factory=dict)
+    """Elo ratings of the variants, which are opponents; none: there is no figure `elo`."""
     team: bool = False  # Whether the variants are drones that follow one target together
     first_box: bool = True  # Whether policies are told the target's true box in the first picture
     tells_solvable: bool = False

@@ -29,6 +29,7 @@ PROTOCOLS: Registry[Protocol] = Registry(
         "recover-camera": f"{_ROOM}.recover:RECOVER_CAMERA",
         "recover-wide": f"{_ROOM}.recover:RECOVER_WIDE",
         "evade": f"{_ROOM}.evade:EVADE",
+        "pursuit": f"{_ROOM}.pursuit:PURSUIT",
         "referring": f"{_ROOM}.referring:REFERRING",
         "mission": f"{_ROOM}.mission:MISSION",
         "air": f"{_ROOM}.air:AIR",

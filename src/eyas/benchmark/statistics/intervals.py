@@ -199,6 +199,37 @@ def worst_fifth_of(values: ArrayLike, clusters: Clusters) -> Estimate:
     return Estimate(len(array), clusters.count, mean, spread)
 
 
+_ELO = math.log(10.0) / 400.0  # Of Elo's scale: 400 points are odds of ten to one
+_MOST = 800.0  # Distance to the strongest and the weakest opponent beyond which nobody is rated
+
+
+def elo_of(scores: ArrayLike, opponents: ArrayLike, clusters: Clusters) -> Estimate:
+    """Return the rating at which N games would be expected to give as many points as they have
+    (Elo 1978, The Rating of Chessplayers).
+
+    Args:
+        scores: Points of each game, 0 to 1.
+        opponents: Ratings of the opponents.
+    """
+    points, rated = np.asarray(scores, np.float64), np.asarray(opponents, np.float64)
+    low, high = float(rated.min()) - _MOST, float(rated.max()) + _MOST
+
+    def expected(rating: float) -> Floats:
+        return 1.0 / (1.0 + exact.exp(_ELO * (rated - rating)))
+
+    for _ in range(60):  # halves the interval to far below a point
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if expected(middle).sum() < points.sum() else (low, middle)
+    rating, spread = 0.5 * (low + high), None
+    hoped = expected(rating)
+    slope = _ELO * float((hoped * (1.0 - hoped)).mean())
+    if clusters.count >= FEWEST and points.min() < points.max():
+        variance = clusters.variance((points - hoped) / slope)
+        half = math.sqrt(variance) * _student(clusters.degrees)
+        spread = Interval(rating - half, rating + half)
+    return Estimate(len(points), clusters.count, rating, spread)
+
+
 def difference_interval(
     differences: Floats,  # Shape (N,)
     clusters: Clusters,

@@ -15,6 +15,7 @@ from eyas.benchmark.statistics.intervals import (
     Estimate,
     clusters_of,
     difference_interval,
+    elo_of,
     mean_of,
     rate_of,
     restricted_mean_of,
@@ -147,6 +148,8 @@ def rows_of(
             tsr = [figures["tsr"].read(record) for record in chosen]
             found["worst_fifth"] = worst_fifth_of(np.array(tsr, np.float64), clusters_in(chosen))
             found |= _times(chosen, horizon)
+            if protocol.ratings:
+                found |= _elo(chosen, protocol)
             if protocol.reference:
                 found |= _fall(chosen, records, protocol.reference)
             rows.append(TableRow(group, name, chosen, found))
@@ -207,6 +210,19 @@ def _means(records: list[EpisodeRecord], figures: dict[str, Figure]) -> dict[str
             else:
                 found[name] = mean_of(values, clusters, figure.high)
     return found
+
+
+def _elo(records: Sequence[EpisodeRecord], protocol: Protocol) -> dict[str, Estimate]:
+    """Return the rating against the variants with ratings: an episode is a game, of which who
+    follows gets the share of the time before the first loss.
+    """
+    games = [each for each in records if each.variant in protocol.ratings]
+    if not games:
+        return {}
+    horizon = protocol.steps * protocol.period
+    scores = [min(each.watched / horizon, 1.0) for each in games]
+    ratings = [protocol.ratings[each.variant] for each in games]
+    return {"elo": elo_of(scores, ratings, clusters_in(games))}
 
 
 def _fall(

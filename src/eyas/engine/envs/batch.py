@@ -4,7 +4,7 @@ import logging
 import types
 from collections.abc import Sequence
 from enum import Enum
-from functools import partial
+from functools import cached_property, partial
 from itertools import compress
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from pydantic import BaseModel
 
 from eyas.engine.core.clock import physics_steps
-from eyas.engine.core.errors import EyasError
+from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.memento import Memento, recall, remember
 from eyas.engine.core.rng import EpisodeKey
 from eyas.engine.envs.actions import make_actions
+from eyas.engine.envs.evader_view import EvaderObserver
 from eyas.engine.envs.information import Info, information
 from eyas.engine.envs.observation import Observer
 from eyas.engine.envs.trained_with import describe
@@ -29,7 +30,9 @@ from eyas.engine.settings.dialect import originals_named
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.episode_sampling import ModelTable, SamplingRules
+from eyas.engine.sim.evaders import Evaders
 from eyas.engine.sim.light import LightRules
+from eyas.engine.sim.simulation import Simulation
 from eyas.engine.sim.starts import FreeStarts
 from eyas.engine.sim.views.parked import ParkedObjects
 from eyas.engine.sim.views.visible_actors import VisibleActors
@@ -40,14 +43,17 @@ from eyas.engine.state.motion import Motion
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.targets.looks import LookTable
+from eyas.engine.task.config import RewardConfig
 from eyas.engine.task.done import DoneReason
 from eyas.engine.task.journal import Journal
 from eyas.engine.task.step_line import step_line
+from eyas.engine.task.terms import RewardTerms
+from eyas.engine.traffic.ways import Ways
 from eyas.lanes import BoundCall, CompiledCall, Kernel, PackedBundle
 
 _CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall, Kernel)
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
-_SHARED = (Assets, CpuRenderer, Lighting, Motion, ParkedObjects, Terrain)
+_SHARED = (Assets, CpuRenderer, Lighting, Motion, ParkedObjects, Terrain, Ways)
 _TABLES = (Fitted, SamplingRules, LightRules, LookTable, ModelTable)
 """Made of the settings and the catalogue, which may have grown in this process."""
 _BOUND = (BoundCall, PackedBundle)  # To the addresses of arrays, which stay
@@ -72,6 +78,32 @@ class Outcome(NamedTuple):
     terminated: Mask  # Whether the episode has ended before its number of steps, shape (N,)
     truncated: Mask  # Whether it has ended by its number of steps, shape (N,)
     reason: NDArray[np.int64]  # `eyas.engine.task.done.DoneReason` of its end, shape (N,).
+
+
+TARGET = "target"
+"""Name among the terms of the reward of what targets get that agents move."""
+
+
+class Evading:
+    """Actions and rewards of targets that agents move, of an action of each.
+
+    Attributes:
+        actions: See `Evaders.actions`, shape (N, 2).
+        reward: Of each target: its own terms, or what its tracker gets with the opposite sign,
+            summed over control steps, shape (N,).
+    """
+
+    def __init__(self, config: EyasConfig, count: int) -> None:
+        self.actions, self.reward = np.zeros((count, 2)), np.zeros(count)
+        own = config.evader.reward
+        self._terms = RewardTerms(RewardConfig(weight=0.0, terms=own)) if own else None
+
+    def add(self, simulation: Simulation, reward: NDArray[np.float64], running: Mask) -> None:
+        """Add the rewards of a control step, of the trackers that run."""
+        gained = -reward
+        if self._terms is not None:
+            gained = simulation.evader_reward(self._terms)
+        self.reward += np.where(running, gained, 0.0)
 
 
 class Truth(NamedTuple):
@@ -181,18 +213,49 @@ class Batch:
         episodes.tick[:] = key.stream("time").integers(first, last + 1)
         simulation.reset()
 
-    def step(self, actions: Any, active: Mask) -> Outcome:  # noqa: ANN401  # whatever a learner returns
+    @cached_property
+    def evader_view(self) -> EvaderObserver:
+        """What targets that agents move see and may do."""
+        assert self.evaders is not None
+        return EvaderObserver(self.config, self._simulation)
+
+    @property
+    def evaders(self) -> Evaders:
+        """The targets, which agents move.
+
+        Raises:
+            ConfigError: They move as recorded, or fixed drivers move them.
+        """
+        found = self._simulation.evaders
+        if found is None or not found.ahead_of_time:
+            raise ConfigError(
+                f"evader.driver: {self.config.evader.driver} is not allowed where targets are "
+                "agents; allowed: 'agent'"
+            )
+        return found
+
+    def step(
+        self,
+        actions: Any,  # noqa: ANN401  # whatever a learner returns
+        active: Mask,
+        evading: Evading | None = None,
+    ) -> Outcome:
         """Hold an action of each agent; `begin` or `look` comes next.
 
         Args:
             actions: N actions.
             active: The trackers that fly, shape (N,); for the others, whose rewards are 0 and who
                 have no end, time stands still, or they hover in the world that they share.
+            evading: What targets that agents move do, and where their rewards are added up.
 
         Raises:
             ActionError: An action is not in the space of actions.
         """
         commands = self.actions.commands(actions)
+        if evading is not None:
+            self.evaders.act(np.arange(len(active)), evading.actions)
+            whole = self.config.env.action_repeat * self._steps
+            self.evaders.advance(whole, None if self._shared else active)
         reward = np.zeros(len(active))
         terms: dict[str, NDArray[np.float64]] = {}
         running, reason = active, np.zeros(len(active), np.int64)
@@ -202,12 +265,16 @@ class Batch:
             flying = None if self._shared else running
             result = self._simulation.advance(commands, self._steps, flying)
             reward += np.where(running, result.reward, 0.0)
+            if evading is not None:
+                evading.add(self._simulation, result.reward, running)
             for name, values in result.terms.items():
                 terms[name] = np.where(running, values, 0.0) + terms.get(name, 0.0)
             reason[running] = result.reason[running]
             running = running & ~result.done
             if not running.any():
                 break
+        if evading is not None:
+            terms[TARGET] = evading.reward
         if self.config.verbose:
             snapshot = self._simulation.snapshot
             self._journal.step(snapshot)

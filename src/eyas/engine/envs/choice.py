@@ -7,6 +7,7 @@ from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
+from eyas.engine.behaviours.evader import EvaderDriver
 from eyas.engine.core.clock import physics_steps
 from eyas.engine.core.config import updated, validated
 from eyas.engine.core.errors import ConfigError, UnknownNameError
@@ -88,6 +89,32 @@ def chosen_settings(source: Source, **choices: Unpack[EnvChoices]) -> EyasConfig
     if (limit := choices.get("max_episode_steps")) is None:
         return config
     return updated(config, {"done": {"total_steps": limit * steps_per_action(config)}})
+
+
+def targets_act(agents: str) -> bool:
+    """Return whether targets are agents beside the trackers.
+
+    Raises:
+        ConfigError: There are no such agents.
+    """
+    if agents not in ("tracker", "tracker+target"):
+        raise ConfigError(f"agents: {agents!r} is not allowed: 'tracker' or 'tracker+target'")
+    return agents == "tracker+target"
+
+
+def evading_settings(config: EyasConfig) -> EyasConfig:
+    """Return the settings of an environment whose targets are agents.
+
+    Raises:
+        ConfigError: A fixed driver moves them.
+    """
+    driver = config.evader.driver
+    if driver not in (None, EvaderDriver.AGENT):
+        raise ConfigError(
+            f"evader.driver: '{driver}' is not allowed with agents='tracker+target': 'agent', or "
+            "null"
+        )
+    return updated(config, {"evader": {"driver": EvaderDriver.AGENT.value}})
 
 
 def episode_settings(config: EyasConfig, options: Mapping[str, Any] | None) -> EyasConfig:

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.errors import ActionError
-from eyas.engine.envs.batch import Batch, Outcome, Seeds, Truth
+from eyas.engine.envs.batch import TARGET, Batch, Evading, Outcome, Seeds, Truth
 from eyas.engine.envs.choice import kinds_of, settings_of_kinds
+from eyas.engine.envs.evader_view import evader_actions
 from eyas.engine.envs.information import Info
 from eyas.engine.envs.observation import Observation
 from eyas.engine.settings.config import EyasConfig
@@ -32,12 +33,16 @@ class MixedBatch:
         config: The settings.
         count: N.
         measures: Whether targets are measured in the pictures, see `truth`.
+        evading: Whether targets are agents, too: then actions and observations are dictionaries
+            with the parts `tracker` and `target`.
 
     Raises:
         EyasError: A setting is wrong; the message is one line.
     """
 
-    def __init__(self, config: EyasConfig, count: int, *, measures: bool = False) -> None:
+    def __init__(
+        self, config: EyasConfig, count: int, *, measures: bool = False, evading: bool = False
+    ) -> None:
         kinds = settings_of_kinds(config)
         kind_of = np.array(kinds_of(config, count))
         self._count = count
@@ -57,6 +62,14 @@ class MixedBatch:
         self._actions = alike.actions
         self.action_space: gymnasium.Space[Any] = alike.actions.space
         self.observation_space: gymnasium.Space[Any] = alike.observer.space
+        self._evading = evading
+        if evading:
+            view = alike.evader_view
+            spaces = gymnasium.spaces
+            self.action_space = spaces.Dict({"tracker": self.action_space, "target": view.actions})
+            self.observation_space = spaces.Dict(
+                {"tracker": self.observation_space, "target": view.space}
+            )
 
     def begin(self, chosen: Mask, seeds: Seeds = None) -> None:
         """Begin new episodes, see `Batch.begin`."""
@@ -66,10 +79,24 @@ class MixedBatch:
 
     def step(self, actions: Any, active: Mask) -> Outcome:  # noqa: ANN401  # whatever a learner returns
         """Hold an action of each agent, see `Batch.step`."""
+        wanted = None
+        if self._evading:
+            if not isinstance(actions, Mapping) or {*actions} != {"tracker", "target"}:
+                raise ActionError(
+                    "actions: not allowed: a dictionary with arrays 'tracker' and 'target'"
+                )
+            wanted = evader_actions(actions["target"], self._count, "actions['target']")
+            actions = actions["tracker"]
         array = array_of(actions, self._count)
         if len(self._groups) > 1:
             self._actions.commands(array)  # refuses before any environment has moved
-        outcomes = [batch.step(array[rows], active[rows]) for batch, rows in self._groups]
+        outcomes = []
+        for batch, rows in self._groups:
+            evading = None
+            if wanted is not None:
+                evading = Evading(batch.config, len(rows))
+                evading.actions[:] = wanted[rows]
+            outcomes.append(batch.step(array[rows], active[rows], evading))
         outcome: Outcome = joined(outcomes, self._rows)
         return outcome
 
@@ -78,15 +105,26 @@ class MixedBatch:
         for batch, rows in self._groups:
             if chosen[rows].any():
                 batch.look(chosen[rows], begun[rows])
+                if self._evading:
+                    batch.evader_view.look(np.flatnonzero(chosen[rows]).astype(np.int32))
 
     def copy_to(self, out: Observation) -> None:
         """Copy the latest observation of each, with a leading axis of N."""
         for batch, rows in self._groups:
-            batch.observer.copy_to(out, rows if len(self._groups) > 1 else slice(None))
+            mine = rows if len(self._groups) > 1 else slice(None)
+            if self._evading:
+                assert isinstance(out, Mapping)
+                out["target"][mine] = batch.evader_view.latest
+                batch.observer.copy_to(out["tracker"], mine)
+            else:
+                batch.observer.copy_to(out, mine)
 
     def one(self, index: int) -> Observation:
         """Return a copy of the latest observation of one."""
         batch, tracker = self._place[index]
+        if self._evading:
+            own = batch.evader_view.latest[tracker].copy()
+            return {"tracker": batch.observer.one(tracker), "target": own}
         return batch.observer.one(tracker)
 
     def info(self) -> Info:
@@ -102,7 +140,8 @@ class MixedBatch:
     @property
     def terms(self) -> tuple[str, ...]:
         """Names of the terms of the reward, of all kinds."""
-        return terms_of([batch.config for batch, _ in self._groups])
+        own = terms_of([batch.config for batch, _ in self._groups])
+        return (*own, TARGET) if self._evading else own
 
     def config_of(self, index: int) -> EyasConfig:
         """Return the settings of one."""

@@ -11,15 +11,18 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.errors import ActionError, ConfigError, MissingExtraError
 from eyas.engine.core.rng import checked_seed
-from eyas.engine.envs.batch import Batch
+from eyas.engine.envs.batch import Batch, Evading, Outcome
 from eyas.engine.envs.choice import (
     EnvChoices,
     EpisodeChoices,
     Source,
     chosen_settings,
+    evading_settings,
     first_seed,
     settings_of_kinds,
+    targets_act,
 )
+from eyas.engine.envs.evader_view import evader_actions
 from eyas.engine.envs.information import Info, by_term, of_one
 from eyas.engine.envs.observation import Observation
 from eyas.engine.envs.play import Window, hover_action
@@ -44,9 +47,14 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
     last has left, `reset` begins new episodes at another time of the traffic. Drones do not
     collide. Observations, actions, rewards and information are those of `TrackingEnv`.
 
+    With `agents="tracker+target"`, the targets are agents, too, `target_0` to `target_<N - 1>`
+    (`target_0` alone if `same_target` is true): docs/pursuit.md. A target leaves `agents` with the
+    last drone that follows it.
+
     Args:
-        num_drones: N.
+        num_drones: N; None: 2, or 1 if targets are agents.
         config: Settings, see `eyas.engine.envs.choice.Source`.
+        agents: Who acts: `tracker`, or `tracker+target`.
         render_mode: `rgb_array`, `human` (a window; extra `play`) or None.
         overlay: As for `TrackingEnv`.
         choices: Settings by keyword, see `eyas.engine.envs.choice.EnvChoices`.
@@ -64,13 +72,17 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
 
     def __init__(
         self,
-        num_drones: int = 2,
+        num_drones: int | None = None,
         config: Source = None,
         *,
+        agents: str = "tracker",
         render_mode: str | None = None,
         overlay: bool = False,
         **choices: Unpack[EnvChoices],
     ) -> None:
+        evading = targets_act(agents)
+        if num_drones is None:
+            num_drones = 1 if evading else 2
         if num_drones < 1:
             raise ConfigError(
                 f"num_drones: {num_drones} is not allowed: a whole number, at least 1"
@@ -80,14 +92,25 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
                 f"render_mode: '{render_mode}' is not allowed: 'rgb_array', 'human' or None"
             )
         self.config = settings_of_kinds(chosen_settings(config, **choices))[0]
+        if evading:
+            self.config = evading_settings(self.config)
         self._batch = Batch(self.config, num_drones, shared=True)
-        self.possible_agents = [f"drone_{n}" for n in range(num_drones)]
+        self._drones = [f"drone_{n}" for n in range(num_drones)]
+        self._targets: list[str] = []
+        if evading:
+            count = 1 if self.config.same_target else num_drones
+            self._targets = [f"target_{n}" for n in range(count)]
+        self.possible_agents = [*self._drones, *self._targets]
         self.agents: list[str] = []
         self.observation_spaces: dict[str, gymnasium.Space[Any]] = {}
         self.action_spaces: dict[str, gymnasium.Space[Any]] = {}
-        for agent in self.possible_agents:  # of their own, since spaces hold random numbers
+        for agent in self._drones:  # of their own, since spaces hold random numbers
             self.observation_spaces[agent] = deepcopy(self._batch.observer.space)
             self.action_spaces[agent] = deepcopy(self._batch.actions.space)
+        for agent in self._targets:
+            view = self._batch.evader_view
+            self.observation_spaces[agent] = deepcopy(view.space)
+            self.action_spaces[agent] = deepcopy(view.actions)
         rate = self.config.control.frequency / self.config.env.action_repeat
         self.metadata = {**self.metadata, "render_fps": max(round(rate), 1)}
         self.render_mode = render_mode
@@ -96,11 +119,11 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
         self._window = Window(self.metadata["render_fps"]) if render_mode == "human" else None
 
     def observation_space(self, agent: str) -> gymnasium.Space[Any]:
-        """Return the space of a drone's observations."""
+        """Return the space of an agent's observations."""
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> gymnasium.Space[Any]:
-        """Return the space of a drone's actions."""
+        """Return the space of an agent's actions."""
         return self.action_spaces[agent]
 
     def reset(
@@ -131,7 +154,7 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
         observations = self._look(begun=True)
         info = self._batch.info()
         self._show()
-        return observations, {agent: of_one(info, n) for n, agent in self._flying()}
+        return observations, {agent: of_one(info, n) for n, agent in self._acting()}
 
     def step(self, actions: dict[str, Any]) -> Stepped:
         """Hold an action of each drone in `agents`.
@@ -150,24 +173,27 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
                 f"actions: {', '.join(map(str, actions)) or 'none'}: not allowed: one for each of "
                 f"{', '.join(self.agents)}"
             )
-        active = np.array([agent in actions for agent in self.possible_agents])
+        active = np.array([agent in actions for agent in self._drones])
         rest = hover_action(self._batch.actions.space)
+        evading = self._evading(actions)
         outcome = self._batch.step(
-            [actions.get(agent, rest) for agent in self.possible_agents], active
+            [actions.get(agent, rest) for agent in self._drones], active, evading
         )
-        observations, flying = self._look(begun=False), self._flying()
+        observations, acting = self._look(begun=False), self._acting()
         info = self._batch.info() | by_term(outcome.terms)
         info["done_reason"] = np.where(active, outcome.reason, info["done_reason"])
-        ended = outcome.terminated | outcome.truncated
-        self.agents = [agent for n, agent in flying if not ended[n]]
+        rewards = {}
+        for n, agent in acting:
+            if agent in self._drones:
+                rewards[agent] = float(outcome.reward[n])
+            else:
+                assert evading is not None
+                rewards[agent] = float(evading.reward[self._followers(n)].sum())
+        terminated, truncated = self._ends(outcome, active, acting)
+        self.agents = [a for _, a in acting if not (terminated[a] or truncated[a])]
         self._show()
-        return (
-            observations,
-            {agent: float(outcome.reward[n]) for n, agent in flying},
-            {agent: bool(outcome.terminated[n]) for n, agent in flying},
-            {agent: bool(outcome.truncated[n]) for n, agent in flying},
-            {agent: of_one(info, n) for n, agent in flying},
-        )
+        told = {agent: of_one(info, n) for n, agent in acting}
+        return observations, rewards, terminated, truncated, told
 
     def render(self) -> NDArray[np.uint8] | None:
         """Return the pictures of all cameras side by side, shape (H, N W, 3).
@@ -197,17 +223,54 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
         if self._closed:
             raise ClosedEnvironmentError("the environment is closed")
 
-    def _flying(self) -> list[tuple[int, str]]:
-        """Return number and name of each drone in `agents`."""
-        return [(n, agent) for n, agent in enumerate(self.possible_agents) if agent in self.agents]
+    def _acting(self) -> list[tuple[int, str]]:
+        """Return number and name of each agent in `agents`, the drones first."""
+        every = (*enumerate(self._drones), *enumerate(self._targets))
+        return [(n, agent) for n, agent in every if agent in self.agents]
+
+    def _followers(self, target: int) -> NDArray[np.bool_]:
+        """Return which drones follow a target, shape (N,)."""
+        return np.asarray(self._batch.evaders.owner == target)
+
+    def _evading(self, actions: dict[str, Any]) -> Evading | None:
+        """Return what targets do; None: they are no agents."""
+        if not self._targets:
+            return None
+        evading = Evading(self.config, len(self._drones))
+        evading.actions[:] = self._batch.evaders.wanted(np.arange(len(self._drones)))
+        for n, agent in enumerate(self._targets):
+            if agent in actions:
+                own = evader_actions([actions[agent]], 1, f"actions[{agent!r}]")
+                evading.actions[self._followers(n)] = own
+        return evading
+
+    def _ends(
+        self, outcome: Outcome, active: NDArray[np.bool_], acting: list[tuple[int, str]]
+    ) -> tuple[dict[str, bool], dict[str, bool]]:
+        """Return whose episodes have ended, and by the number of steps."""
+        terminated, truncated = {}, {}
+        goes_on = active & ~outcome.terminated & ~outcome.truncated
+        for n, agent in acting:
+            mine = np.arange(len(active)) == n
+            if agent in self._targets:
+                mine = self._followers(n)
+            over = not goes_on[mine].any()
+            truncated[agent] = bool(over and outcome.truncated[mine].any())
+            terminated[agent] = bool(over and not truncated[agent])
+        return terminated, truncated
 
     def _look(self, *, begun: bool) -> dict[str, Observation]:
-        """Return the observations of the drones in `agents`."""
-        flying = self._flying()
-        chosen = np.zeros(len(self.possible_agents), np.bool_)
-        chosen[[n for n, _ in flying]] = True
+        """Return the observations of the agents in `agents`."""
+        acting = self._acting()
+        chosen = np.zeros(len(self._drones), np.bool_)
+        chosen[[n for n, agent in acting if agent in self._drones]] = True
         self._batch.look(chosen, np.full(len(chosen), begun))
-        return {agent: self._batch.observer.one(n) for n, agent in flying}
+        seen = {a: self._batch.observer.one(n) for n, a in acting if a in self._drones}
+        driven = [(n, agent) for n, agent in acting if agent in self._targets]
+        if driven:
+            told = self._batch.evader_view.look(np.array([n for n, _ in driven], np.int32))
+            seen |= {agent: told[n].copy() for n, agent in driven}
+        return seen
 
     def _pictures(self) -> NDArray[np.uint8]:
         return np.concatenate(self._batch.render(overlay=self._overlay), axis=1)

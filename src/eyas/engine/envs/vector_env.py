@@ -19,8 +19,10 @@ from eyas.engine.envs.choice import (
     Source,
     checked_options,
     chosen_settings,
+    evading_settings,
     first_seed,
     steps_per_action,
+    targets_act,
 )
 from eyas.engine.envs.information import Info, by_term, masked
 from eyas.engine.envs.mixed_batch import MixedBatch
@@ -99,6 +101,9 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
     Args:
         num_envs: N.
         config: Settings, see `eyas.engine.envs.choice.Source`.
+        agents: Who acts: `tracker`, or `tracker+target`. Then actions and observations are
+            dictionaries with the parts `tracker` and `target`, rewards are those of the trackers,
+            and `info["reward/target"]` has those of the targets: see docs/pursuit.md.
         autoreset_mode: When the next episode begins: next step, same step, or by `reset_mask`.
         copy: Whether each step returns new arrays; False: they are written again two steps later.
         render_mode: `rgb_array` or None.
@@ -123,6 +128,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         num_envs: int = 1,
         config: Source = None,
         *,
+        agents: str = "tracker",
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         copy: bool = True,
         render_mode: str | None = None,
@@ -136,10 +142,18 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ConfigError(f"render_mode: '{render_mode}' is not allowed: 'rgb_array' or None")
         self.config = chosen_settings(config, **choices)
+        evading = targets_act(agents)
+        if evading:
+            self.config = evading_settings(self.config)
+        if device is not None and self.config.evader.driver is not None:
+            raise ConfigError(
+                f"evader.driver: '{self.config.evader.driver}' is not allowed with device: targets "
+                "move on this processor; allowed there: null"
+            )
         self._there: Any = None  # environments on a device, which a house brings
         self._here: MixedBatch | None = None
         if device is None:
-            self._here = MixedBatch(self.config, num_envs, measures=measures)
+            self._here = MixedBatch(self.config, num_envs, measures=measures, evading=evading)
         else:
             kind = device.partition(":")[0] if isinstance(device, str) else "host"
             elsewhere = brought_object("eyas.devices", kind)

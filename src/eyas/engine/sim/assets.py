@@ -61,7 +61,12 @@ class Assets:
 
 
 def load_assets(
-    world: WorldConfig, traffic: TrafficConfig, trackers: int = 1, crowd: Crowd = NOBODY
+    world: WorldConfig,
+    traffic: TrafficConfig,
+    trackers: int = 1,
+    crowd: Crowd = NOBODY,
+    *,
+    bodies: bool = False,
 ) -> Assets:
     """Return the data of a simulation; simulations that need the same part share it.
 
@@ -74,6 +79,7 @@ def load_assets(
         trackers: Number of trackers in a world; at least three times as many vehicles enter
             together in a group, and several see each other.
         crowd: Who is there besides, or instead of, the vehicles.
+        bodies: Whether even the only tracker in a world has a body that may be seen.
 
     Raises:
         EyasError: The map or weather does not exist, or has no traffic.
@@ -98,7 +104,7 @@ def load_assets(
     source = find(world.map, world.seed, traffic, trackers if grouped else 1, crowd)
     kinds, rigs = sorted({*source.motion.kind.tolist()}), Rigs(source.motion.kind)
     body_part, parts = -1, sum(cast.rig.part_count for cast in rigs.casts)
-    if trackers > 1:
+    if trackers > 1 or bodies:
         body_part, parts = parts, parts + 1
         kinds.append(kind_index(QUADROTOR.name))
     plan = _signal_plan(world.map, world.seed, traffic.drivers, traffic.signals)

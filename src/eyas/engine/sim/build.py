@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.behaviours.evader import EvaderDriver, EvaderSight
 from eyas.engine.sim.assets import Assets, load_assets
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.crowd import crowd_of
@@ -45,7 +46,9 @@ def assets_of(config: SimConfig, world_of: NDArray[np.integer]) -> Assets:
     trackers = largest_world(world_of)
     goes_on = bool((np.asarray(world_of) != ALONE).any())
     crowd = crowd_of(config, trackers if goes_on else 0)
-    assets = load_assets(config.world, config.traffic, trackers, crowd)
+    evader = config.evader
+    bodies = evader.driver is EvaderDriver.AGENT and evader.sees is EvaderSight.PICTURE
+    assets = load_assets(config.world, config.traffic, trackers, crowd, bodies=bodies)
     if config.light.visibility is not None and not assets.lighting.foggy:
         _LOG.warning(
             "light.visibility (Env_Params.foggy_use_default): without effect in the weather '%s', "

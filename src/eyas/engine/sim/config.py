@@ -6,6 +6,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from eyas.engine.behaviours.airborne import AirborneConfig
 from eyas.engine.behaviours.config import ExtraConfig
+from eyas.engine.behaviours.evader import EvaderConfig
 from eyas.engine.camera.config import CameraConfig, FurtherCameraConfig
 from eyas.engine.core.config import Config
 from eyas.engine.core.variation import Variation, within
@@ -66,6 +67,7 @@ class SimConfig(Config):
     """Groups that share the world with the targets as distractors; `null`: the pedestrians of the
     map, see docs/behaviours.md."""
     airborne: AirborneConfig = AirborneConfig()
+    evader: EvaderConfig = EvaderConfig()
 
     @model_validator(mode="after")
     def _cameras_by_name(self) -> "SimConfig":

@@ -1,5 +1,6 @@
 """The simulation: N trackers, each with a target, in separate or shared worlds."""
 
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import NamedTuple
 
@@ -12,6 +13,7 @@ from eyas.engine.core.rng import EpisodeKey
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.episodes import Episodes
+from eyas.engine.sim.evaders import Evaders, evader_assets
 from eyas.engine.sim.light import LightChanges
 from eyas.engine.sim.starts import starts_in
 from eyas.engine.sim.stepper import Stepper
@@ -22,6 +24,7 @@ from eyas.engine.state.motion import ActorState
 from eyas.engine.state.scene import Scene
 from eyas.engine.state.snapshot import CameraState, Snapshot
 from eyas.engine.targets.kind import Colour, Looks
+from eyas.engine.targets.rig import Rigs
 from eyas.engine.task.clearance import Clearance
 from eyas.engine.task.quantities import Setting
 from eyas.engine.task.rules import Rules, exact, lenient, make_rules
@@ -67,6 +70,7 @@ class Simulation:
         traffic: Everything that moves by itself; live traffic takes reactions.
         snapshot: The state of everything; its arrays are written in place by each step.
         view: What agents see of it, now or late.
+        evaders: The targets, where agents or fixed drivers move them; None: they move as recorded.
         judged: Whether views are rewarded and limits end episodes, see `TrackerConfig.judged`.
 
     Args:
@@ -79,6 +83,10 @@ class Simulation:
     def __init__(
         self, config: SimConfig, assets: Assets, tracker: Tracker, world_of: NDArray[np.integer]
     ) -> None:
+        evading = evader_assets(config, assets, len(world_of))
+        if evading is not None:
+            rigs = Rigs(evading.motion.kind)
+            assets = replace(assets, traffic=evading, rigs=rigs)
         worlds = Worlds(config, assets, world_of)
         self.config = config
         self.count = len(worlds.of)
@@ -95,6 +103,11 @@ class Simulation:
         self._episodes = Episodes(
             config, assets.traffic, worlds, light, self.snapshot, samplers, starts
         )
+        self.evaders: Evaders | None = None
+        if evading is not None:
+            follow = self._episodes.follow
+            self.evaders = Evaders(config, assets, evading, worlds, self.snapshot, follow)
+            self._stepper.decide = self.evaders.advance
         view = partial(View, config, assets, worlds, light, sensors, visible=tracker.visible)
         self._present = self.view = view(seen)
         if seen.is_late:
@@ -176,7 +189,12 @@ class Simulation:
             ConfigError: The recording is too short for an episode.
         """
         chosen = np.arange(self.count) if trackers is None else np.flatnonzero(trackers)
-        self._stepper.begin(chosen, self._episodes.begin(chosen), self._episodes.key)
+        if self.evaders is not None:
+            self.evaders.release(chosen)
+        pitch = self._episodes.begin(chosen)
+        if self.evaders is not None:
+            self.evaders.begin(chosen, self._episodes.key)
+        self._stepper.begin(chosen, pitch, self._episodes.key)
 
     def advance(
         self, commands: Floats, physics_steps: int = 1, active: NDArray[np.bool_] | None = None
@@ -398,6 +416,16 @@ class Simulation:
         )
         chosen, rules = np.asarray(trackers, np.int32), self.rules if overlay else None
         self._present.pictures.draw_from(chosen, cameras, picture, rules)
+
+    def draw_for_evaders(
+        self, trackers: NDArray[np.int32], cameras: CameraState, picture: Picture
+    ) -> None:
+        """Draw what cameras on the targets of trackers see, the trackers among it."""
+        self._present.pictures.draw_from(trackers, cameras, picture, None, bodies=True)
+
+    def evader_reward(self, terms: RewardTerms) -> Floats:
+        """Return the sum of terms of a target's reward now, shape (N,)."""
+        return terms.of(self.snapshot)[0]
 
     def close(self) -> None:
         """End live traffic, if that is what drives; may be called twice."""

@@ -74,6 +74,8 @@ class Stepper:
         sensors: What is sensed after each physics step.
         seen: The state that agents see.
         told: What the trackers tell of themselves, see `Tracker.told`.
+        decide: Called before physics steps, with their number and who flies; None: nothing is to
+            be decided.
         samplers: Called with each tracker and the key of its episode that begins.
     """
 
@@ -88,6 +90,7 @@ class Stepper:
         count, terrain = len(worlds.of), assets.scene.terrain
         self._traffic, self._snapshot = assets.traffic, snapshot
         own = not isinstance(config.tracker.kind, TrackerKind)  # whose kernels may do anything
+        self.decide: Callable[[int, NDArray[np.bool_]], None] | None = None
         self._calls, self._seldom = 0, 1 if own else _SELDOM
         self._memory = tracker.memory(count, terrain)
         around = StepSurroundings(assets.traffic.motion, terrain)
@@ -179,6 +182,8 @@ class Stepper:
         if self._traffic.live:
             last = int(self._snapshot.episodes.tick.max()) + steps
             self._traffic.prepare(last * PHYSICS_STEP)
+        if self.decide is not None:
+            self.decide(steps, self._orders.active)
         if not self.sensors.follow and not self.seen.is_late:
             self._orders.steps[0] = steps
             step()

@@ -14,7 +14,7 @@ from eyas.engine.state.motion import ActorState
 from eyas.engine.state.scene import ACTOR_OBJECT, DRONE_CLASS
 from eyas.engine.state.snapshot import CameraState
 from eyas.engine.targets.catalogue import KINDS
-from eyas.engine.targets.kind import Colour, Looks
+from eyas.engine.targets.kind import HIDDEN, Colour, Looks
 from eyas.engine.targets.looks import LookSampler
 from eyas.engine.traffic.interpolation import sample_before
 from eyas.lanes import interpreted
@@ -53,6 +53,7 @@ class Worlds:
         lasting: Whether the time of each world continues when an episode ends, shape (W,).
         looks: Models and colours of the actors in all W worlds; they change in place.
         look_table: What these are sampled from.
+        stand_in: Recorded actor as whom each actor is drawn, shape (A,).
 
     Args:
         config: The settings.
@@ -78,8 +79,12 @@ class Worlds:
         self._any_lasting = bool(self.lasting.any())
         self._members = [np.flatnonzero(self.of == world) for world in range(len(first))]
         self._assets = assets
-        self.look_table = LookSampler(assets.traffic.motion.kind, config.traffic.colour).table
+        # Targets that are moved have the looks of those whose places they take.
+        known = getattr(assets.traffic, "own", None)
+        kinds = assets.traffic.motion.kind[:known]
+        self.look_table = LookSampler(kinds, config.traffic.colour).table
         worlds, actors = len(self.leader), assets.traffic.actors
+        self.stand_in = np.arange(actors)
         self.looks = Looks(
             np.zeros((worlds, actors), np.int32), np.ones((worlds, actors, 3), np.float32)
         )
@@ -90,7 +95,14 @@ class Worlds:
             lights = NearLights(assets.signals, float(far[assets.signals.first_part :].max()))
         wet = assets.lighting.spray > 0.0
         self._near = VisibleActors(
-            assets.traffic.motion, rigs, self.looks, reach, spray=wet, lights=lights
+            assets.traffic.motion,
+            rigs,
+            self.looks,
+            reach,
+            spray=wet,
+            lights=lights,
+            stand_in=None if known is None else self.stand_in,
+            known=known or 0,
         )
 
     @property
@@ -169,7 +181,9 @@ class Worlds:
         """
         actors = ActorState.create(1, self._assets.traffic.actors)
         self._assets.traffic.at(np.array([tick * PHYSICS_STEP]), actors)
-        return actors, self.looks.model[self.of[tracker]]
+        models = self.looks.model[self.of[tracker]]
+        actors.present[0] &= models != HIDDEN
+        return actors, models
 
     def lamps_around(
         self,

@@ -78,6 +78,11 @@ class Section(NamedTuple):
     blocks: tuple[Solid, ...]  # What is solid of it
 
 
+HIDDEN = -1
+"""Model of an actor that is in the table of motion, but not in a world, see
+`eyas.engine.sim.evader_traffic`."""
+
+
 class Group(NamedTuple):
     """The G actors of one kind, and their slots in a draw list; kernels read it."""
 

@@ -146,6 +146,23 @@ def shining(motion: Motion, actor: int, time: float) -> int:
     return lit
 
 
+def shining_as(
+    motion: Motion,  # Motion of all actors
+    actors: NDArray[np.integer],  # The actors, shape (K,)
+    like: NDArray[np.integer],  # Those with whose indicators theirs blink, shape (K,)
+    time: NDArray[np.float64],  # [s], shape (K,)
+) -> NDArray[np.uint8]:
+    """Return which lamps of actors shine in the rhythm of others, see `shining`, shape (K,)."""
+    last = np.clip((time - motion.first_time) * motion.rate, 0.0, float(motion.samples - 1))
+    state = motion.lamps[np.minimum(last.astype(np.int64), motion.samples - 2), actors]
+    blink = BLINKS * time + _APART * like.astype(np.float64)
+    on = blink - np.trunc(blink) < 0.5
+    lit = np.where(state & _BRAKE, BRAKING, 0)
+    lit |= np.where(on & ((state & _LEFT) != 0), LEFT, 0)
+    lit |= np.where(on & ((state & _RIGHT) != 0), RIGHT, 0)
+    return lit.astype(np.uint8)
+
+
 def lamps_of(
     table: NDArray[np.void],  # Their samples, shape (S, A)
     rate: float,  # Its samples per second [Hz]

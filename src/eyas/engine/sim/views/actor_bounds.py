@@ -16,6 +16,9 @@ from eyas.lanes.vector import WIDTH
 NOWHERE = -1e30  # Radius around actors that are absent: it reaches no view
 
 
+ANYWHERE = 1e6  # Radius around actors that may be anywhere: every view may show them
+
+
 class ActorBounds(NamedTuple):
     """Spheres around A actors in each of S seconds."""
 
@@ -55,6 +58,16 @@ def make_rows(bounds: ActorBounds, motion: Motion) -> None:
     """Make all rows."""
     for row in range(bounds.ready.shape[0]):
         made_row(bounds, motion, row * bounds.samples[0])
+
+
+def unbounded_after(known: int, bounds: ActorBounds, motion: Motion) -> None:
+    """Make all rows, with spheres without end around actors from a number on, whose motion is not
+    known in advance.
+    """
+    make_rows(bounds, motion)
+    columns = np.flatnonzero(bounds.actor >= known)
+    bounds.sphere[:, :3, columns] = 0.0
+    bounds.sphere[:, 3, columns] = ANYWHERE
 
 
 @kernel(inline=True)

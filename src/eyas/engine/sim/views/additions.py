@@ -30,8 +30,9 @@ class TrackerBodies:
         part: int,  # The renderer's part of a body; it has one if trackers share worlds
         *,
         visible: bool = True,  # Whether trackers see each other at all
+        itself: bool = False,  # Whether its own body is seen, too: by another camera than its own
     ) -> None:
-        others = [own[own != n] for n, own in enumerate(mates)]
+        others = [own[(own != n) | itself] for n, own in enumerate(mates)]
         self.any = visible and any(map(len, others))  # Whether any tracker sees another
         self._others = np.full((len(others), max(map(len, others), default=0)), -1)
         for row, own in zip(self._others, others, strict=True):

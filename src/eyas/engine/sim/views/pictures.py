@@ -59,6 +59,7 @@ class PictureDrawer:
         mates = [worlds.trackers_of(n) for n in range(len(worlds.of))]
         actors, part = worlds.actors, assets.body_part
         self._bodies = TrackerBodies(mates, actors, part, visible=visible)
+        self._all_bodies = TrackerBodies(mates, actors, part, itself=True)
         self._light = light
         self._snapshot = snapshot
         self._optics, self._camera = optics, None if optics is None else optics.model
@@ -143,10 +144,15 @@ class PictureDrawer:
         picture: Picture,  # V pictures with colours, of any size; pixels are square
         # Rules for the overlay of all trackers of that world; None: no overlay
         rules: Rules | None,
+        *,
+        bodies: bool = False,  # Whether the bodies of all trackers of that world are drawn
     ) -> None:
         """Draw the worlds of trackers from other cameras."""
         height, width = picture_size(picture)
         views, movers = self._views(chosen, cameras, height / width)
+        if bodies:
+            movers = self._all_bodies.added(chosen, views.world, movers, self._snapshot.trackers)
+            views.world = np.arange(len(chosen), dtype=np.int32)
         deep = picture if rules is None else with_depth(picture)
         self._renderer.draw(views, movers, deep, self._samples)
         if rules is not None:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.camera.poses import Moving
-from eyas.engine.sim.views.actor_bounds import ActorBounds, bounds_of, made_row
+from eyas.engine.sim.views.actor_bounds import ActorBounds, bounds_of, made_row, unbounded_after
 from eyas.engine.sim.views.near_actors import (
     CAMERA,
     Entry,
@@ -29,10 +29,12 @@ from eyas.engine.sim.views.near_lights import NearLights
 from eyas.engine.sim.views.spray import spray_of, throwing
 from eyas.engine.state.draw import DrawList
 from eyas.engine.state.motion import ActorState, Motion
+from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.state.snapshot import CameraState
-from eyas.engine.targets.kind import Group, Looks
+from eyas.engine.targets.kind import HIDDEN, Group, Looks
 from eyas.engine.targets.rig import Rigs
 from eyas.engine.traffic.interpolation import interpolate_actor, sample_before
+from eyas.engine.traffic.lamps import shining_as
 from eyas.lanes import PackedBundle, compiled
 from eyas.lanes.vector import WIDTH, first_bit
 
@@ -95,6 +97,16 @@ class _Size(NamedTuple):
     slots: int
 
 
+class StandIns(NamedTuple):
+    """Actors that take the places of recorded ones, see `eyas.engine.sim.evader_traffic`."""
+
+    motion: Motion
+    model: NDArray[np.int32]  # Model of each actor in each world, or `HIDDEN`, shape (W, A)
+    like: NDArray[np.int64]  # Recorded actor as whom each is drawn, shape (A,)
+    known: int  # Number of recorded actors; the others follow
+    slots: int  # Slots that each of the others needs
+
+
 class VisibleActors:
     """Poses the actors that matter for some views, in draw lists that hold no others."""
 
@@ -109,15 +121,27 @@ class VisibleActors:
         spray: bool = False,  # Whether vehicles throw up water
         # The lights of signals, which are listed behind the actors; None: there are none
         lights: NearLights | None = None,
+        # Recorded actor as whom each actor is drawn, shape (A,); it may change. Those from `known`
+        # on move as they go, and worlds may hide any; None: all are recorded, and none is hidden
+        stand_in: NDArray[np.int64] | None = None,
+        known: int = 0,
     ) -> None:
         self._lights = lights
+        self._stand_ins: StandIns | None = None
         self._throws = throwing(rigs.kinds) if spray else None
         kinds, actor = kind_table(rigs, reach, spray=spray), column_actors(rigs)
         self._rigs, self._signal = rigs, motion.lamps.size > 0
         self._reach = np.minimum(kinds.reach, _LONGEST)
+        bounds = bounds_of(motion, actor)
+        if stand_in is not None:
+            unbounded_after(known, bounds, motion)
+            moved = next(cast for cast in rigs.casts if cast.group.actor[-1] >= known)
+            slots = moved.rig.slots
+            self._stand_ins = StandIns(motion, looks.model, stand_in, known, slots)
+            self._moved, self._moved_like = np.zeros((0, slots), np.int64), np.zeros(0, np.int64)
         self._given = (
             PackedBundle(motion),
-            PackedBundle(bounds_of(motion, actor)),
+            PackedBundle(bounds),
             PackedBundle(kinds),
             PackedBundle(looks),
         )
@@ -187,6 +211,8 @@ class VisibleActors:
         query.rotation[:views] = cameras.rotation[order]
         query.field_of_view[:views] = cameras.field_of_view[order]
         self._list()
+        if self._stand_ins is not None:
+            self._leave_out_hidden(self._stand_ins)
         if self._lights is not None:
             self._lights.list()
         entries, slots = self._listed.needed.tolist()
@@ -194,14 +220,47 @@ class VisibleActors:
             self._grow(_Size(0, 0, entries, slots))
             self._list_for(worlds, time, row, cameras, aspect)
 
+    def _leave_out_hidden(self, stand_ins: StandIns) -> None:
+        """Take those out of the list that their worlds hide; their slots stay empty."""
+        listed, slots, query = self._listed, max(self._size.slots, 1), self._query
+        count = int(listed.needed[0])
+        if count > self._size.entries or listed.needed[1] > self._size.slots:
+            return  # it is listed again, with room for all
+        slot = listed.slot[:count]
+        row = slot // slots
+        actor = listed.object_id.reshape(-1)[slot] - ACTOR_OBJECT
+        kept = stand_ins.model[query.world[row], actor] != HIDDEN
+        left = int(np.count_nonzero(kept))
+        if left < count:
+            for array in (*listed.state, *listed.looks):
+                array[0, :left] = array[0, :count][kept]
+            slot, row, actor = slot[kept], row[kept], actor[kept]
+            listed.slot[:left] = slot
+            listed.end[:] = np.concatenate([[0], np.cumsum(kept)])[listed.end]
+            listed.needed[0] = left
+        moved = actor >= stand_ins.known
+        actor, row = actor[moved], row[moved]
+        self._moved = slot[moved, None] + np.arange(stand_ins.slots)
+        self._moved_like = stand_ins.like[actor]
+        if listed.lamps.size and len(actor):
+            time = query.time[row]
+            lit = shining_as(stand_ins.motion, actor, self._moved_like, time)
+            listed.lamps.reshape(-1)[self._moved] = lit[:, None]
+
     def _pose(self) -> None:
         """Let the rigs pose the actors, those of each kind at once."""
         listed, begin = self._listed, 0
+        if self._stand_ins is not None:  # rigs know by the object whose wheels a vehicle has
+            ids = listed.object_id.reshape(-1)
+            own = ids[self._moved]
+            ids[self._moved] = ACTOR_OBJECT + self._moved_like[:, None]
         for k, end in enumerate(listed.end.tolist()):
             if begin < end:
                 chosen = self._chosen.get((k, begin, end)) or self._choose(k, begin, end)
                 self._rigs.casts[k].rig.pose(chosen, listed.state, listed.looks, self._flat)
             begin = end
+        if self._stand_ins is not None:
+            ids[self._moved] = own
 
     def _choose(self, k: int, begin: int, end: int) -> Group:
         """Return entries of the list as the actors of kind `k`."""

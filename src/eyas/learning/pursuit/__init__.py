@@ -1,0 +1,1 @@
+"""Self-play of a tracker and a target that wants to be lost; begins in `training.py`."""
