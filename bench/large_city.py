@@ -187,7 +187,7 @@ def _report(name: str, scene: Scene) -> None:
         print(f"  ambient: {ambient.openness.nbytes / 2**20:.1f} MiB in {opened - baked:.1f} s CPU")
         maps = Baked(shadows, ambient, no_land(), TrackMap.empty())
         light = build_light(scene, lighting, maps, geometry)
-        renderer = CpuRenderer(geometry, light)
+        renderer = CpuRenderer(lambda: (geometry, light))
         _measured("  street, 84x84", renderer, street_views(scene))
         _measured("  street, pitch 0.3", renderer, street_views(scene, pitch=0.3))
         _measured("  horizon", renderer, horizon_views(scene))

@@ -36,21 +36,26 @@ import numpy as np
 import eyas
 from eyas.lanes.elementary.arrays import sin
 from eyas.engine.camera.config import Colours
+from eyas.engine.core.config import updated
 from eyas.engine.core.optics.lens import BROWN, lens_of, places
 from eyas.engine.sensors.stack import FrameStack
+from eyas.engine.settings.config import EyasConfig
 from eyas.engine.sim.assets import load_assets
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.still import StillWorld
 from eyas.engine.sim.urban_wind import winds_over
 from eyas.engine.sim.views.actor_bounds import bounds_of, make_rows
-from eyas.engine.sim.worlds import each_alone
+from eyas.engine.sim.worlds import each_alone, together
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.task.privileged import fill_privileged
 from eyas.engine.traffic.recorded import smooth, table_of
 from eyas.engine.traffic.recording_file import load
+from eyas.engine.trackers.driven import driven_drone
 from eyas.engine.world.maps import MAPS
+from eyas.robotics.mavlink.config import MavlinkConfig
+from eyas.robotics.mavlink.readings import equipped
 
 TRACKERS = (
     {},
@@ -106,6 +111,11 @@ for names in ([], ["compass"], ["barometer"], ["compass", "barometer"], ["barome
     simulation = build_simulation(SimConfig(sensors=sensors), each_alone(1))
     simulation.reset()
     simulation.advance(np.zeros((1, 4)), 1)
+hil = EyasConfig(tracker={"supervised": False, "ground_contact": True})
+hil = equipped(updated(hil, {"start": {"velocity": "rest"}}), MavlinkConfig.of(hil), noisy=True)
+simulation = build_simulation(hil, together(1), tracker=driven_drone(hil.tracker))
+simulation.reset()
+simulation.advance(np.zeros((1, 4)), 1)  # as an autopilot does
 fill_privileged(simulation.snapshot, np.zeros((1, 16), np.float32))
 traffic = load_assets(SimConfig().world, SimConfig().traffic).traffic
 make_rows(bounds_of(traffic.motion, np.arange(4)), traffic.motion)

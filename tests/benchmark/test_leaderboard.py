@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from eyas.benchmark.evaluation import run
 from eyas.benchmark.plan.plan import EvaluationPlan
-from eyas.benchmark.report.leaderboard import page
+from eyas.benchmark.report.leaderboard import fresh, page
 from eyas.benchmark.report.leaderboard.mark import KEY_VARIABLE, content_hash
 from eyas.benchmark.report.leaderboard.pack import pack, unpacked
 from eyas.benchmark.report.leaderboard.submission import read_card, submissions_in
@@ -42,8 +42,15 @@ def key(tmp_path, monkeypatch):
 
 @pytest.fixture
 def few_fresh(monkeypatch):
-    """Let fewer episodes be enough: whether figures fit is what is tried, not how sure one is."""
+    """Let fewer episodes be enough, of seeds that are the same in all runs: whether figures fit is
+    what is tried, not how sure one is, and SUMO drives the traffic of a new seed for ten seconds.
+    """
     monkeypatch.setattr("eyas.benchmark.report.leaderboard.verify.LEAST", FRESH)
+    monkeypatch.setattr(fresh.secrets, "randbelow", lambda below: below // 3)
+
+
+def test_seeds_of_fresh_episodes_are_others_each_time():
+    assert len({fresh._test_seed() for _ in range(5)}) == 5
 
 
 @pytest.fixture

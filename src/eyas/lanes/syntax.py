@@ -19,6 +19,8 @@ _LEFT_OUT = frozenset(
 )
 
 
+_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+
 _PARSING = threading.Lock()
 
 
@@ -53,13 +55,15 @@ def tree_of(text: bytes | str, mode: str = "exec") -> ast.AST:
 
 def _parsed(text: bytes) -> dict[str, SourceSyntax]:
     tree = tree_of(text)
-    found = {"": SourceSyntax(_digest("".join(_said(tree)).encode()), ())}
+    said = _Said([], [], {})
+    said.add(tree)
+    found = {"": SourceSyntax(_digest("".join(said.words)), ())}
     for name, node in _functions(tree, ""):
-        own = _written(node)
+        own = said.of(node)
         before = found.get(name)  # defined twice, perhaps under conditions
         if before is not None:
             names = {*before.names, *own.names}
-            own = SourceSyntax(_digest((before.digest + own.digest).encode()), tuple(sorted(names)))
+            own = SourceSyntax(_digest(before.digest + own.digest), tuple(sorted(names)))
         found[name] = own
     return found
 
@@ -77,41 +81,59 @@ def _functions(node: ast.AST, inside: str) -> Iterator[tuple[str, ast.AST]]:
             yield from _functions(child, inside)
 
 
-def _written(node: ast.AST) -> SourceSyntax:
-    return SourceSyntax(_digest("".join(_said(node)).encode()), tuple(sorted(set(_names(node)))))
+class _Said(NamedTuple):
+    """What a tree says, in the same words in all versions of Python; gone through once, since what
+    a function says is a part of what its file says.
+    """
 
+    words: list[str]
+    names: list[str]  # That are read, each with the attribute of it that is read, if it is one
+    functions: dict[ast.AST, tuple[slice, slice]]  # The words and the names of each
 
-def _names(node: ast.AST) -> Iterator[str]:
-    """Yield the names that are read, each with the attribute of it that is read, if it is one."""
-    if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
-        yield node.id
-    elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
-        yield f"{node.value.id}.{node.attr}"
-    else:
-        for field, value in ast.iter_fields(node):
-            if field not in _LEFT_OUT:
-                for part in value if isinstance(value, list) else [value]:
-                    if isinstance(part, ast.AST):
-                        yield from _names(part)
+    def of(self, function: ast.AST) -> SourceSyntax:
+        """Return what is written about a function."""
+        words, names = self.functions[function]
+        read = tuple(sorted(set(self.names[names])))
+        return SourceSyntax(_digest("".join(self.words[words])), read)
 
+    def add(self, node: object, *, named: bool = True) -> None:
+        """Add a part of a tree.
 
-def _said(node: object) -> Iterator[str]:
-    """Yield what a part of a tree says, in the same words in all versions of Python."""
-    if isinstance(node, list):
-        yield "["
-        for part in node:
-            yield from _said(part)
-        yield "]"
-    elif isinstance(node, ast.AST):
-        yield f"({type(node).__name__}"
-        for name, value in ast.iter_fields(node):
-            if name in _LEFT_OUT or value is None or value == []:
+        Args:
+            node: The part.
+            named: Whether the names that it reads count; not of one whose attribute is read.
+        """
+        if isinstance(node, ast.AST):
+            self._add_part(node, named=named)
+        elif isinstance(node, list):
+            self.words.append("[")
+            for part in node:
+                self.add(part)
+            self.words.append("]")
+        else:
+            self.words.append(repr(node))
+
+    def _add_part(self, node: ast.AST, *, named: bool) -> None:
+        words, names = self.words, self.names
+        first, first_name, inner = len(words), len(names), True
+        if isinstance(node, ast.Name):
+            if named and isinstance(node.ctx, ast.Load):
+                names.append(node.id)
+        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            names.append(f"{node.value.id}.{node.attr}")
+            inner = False
+        words.append(f"({type(node).__name__}")
+        for name in node._fields:
+            value = None if name in _LEFT_OUT else getattr(node, name, None)
+            if value is None or value == []:
                 continue
-            yield f" {name}="
-            yield from _said(_without_docstring(node, value) if name == "body" else value)
-        yield ")"
-    else:
-        yield repr(node)
+            words.append(f" {name}=")
+            said = _without_docstring(node, value) if name == "body" else value
+            self.add(said, named=inner)
+        words.append(")")
+        if isinstance(node, _FUNCTIONS):
+            own = slice(first, len(words)), slice(first_name, len(names))
+            self.functions[node] = own
 
 
 def _without_docstring(node: ast.AST, body: object) -> object:
@@ -123,8 +145,8 @@ def _without_docstring(node: ast.AST, body: object) -> object:
     return body
 
 
-def _digest(text: bytes) -> str:
-    return sha256(text).hexdigest()[:24]
+def _digest(text: str) -> str:
+    return sha256(text.encode()).hexdigest()[:24]
 
 
 INDEX = TextIndex(Path(__file__), _parsed)  # The syntax of files

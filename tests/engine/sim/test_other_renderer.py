@@ -1,9 +1,10 @@
-"""Another renderer in the place of Eyas' own."""
+"""Another renderer in the place of Eyas' own, and when that packs what it draws."""
 
 import dataclasses
 
 import numpy as np
 
+from eyas.engine.render.renderer import CpuRenderer
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import DrawStage, Picture, Renderer
@@ -37,3 +38,27 @@ def test_a_simulation_draws_with_any_renderer(config, assets):
     away = np.linalg.norm(targets, axis=1)
     assert (picture.depth.max(axis=(1, 2)) <= away + 5.0).all()
     assert (picture.depth > 0.0).all()
+
+
+def test_nothing_is_packed_for_drawing_before_the_first_picture(config, assets):
+    """Evaluations of oracles and environments without pictures never wait for it."""
+    asked = []
+
+    def pack():
+        asked.append(True)
+        return assets.renderer.packed
+
+    trackers, pictures = np.arange(2, dtype=np.int32), []
+    for renderer in (CpuRenderer(pack), assets.renderer):
+        lazy = dataclasses.replace(assets, renderer=renderer)
+        simulation = Simulation(config, lazy, DRONE, each_alone(2))
+        simulation.reset()
+        simulation.advance(np.zeros((2, 4)), 10)
+        simulation.packets()
+        assert not asked or pictures
+        pictures.append(Picture.create(2, 6, 8, depth=True, object_id=True))
+        for _ in range(2):
+            simulation.draw(trackers, pictures[-1])
+    assert asked == [True]
+    for name in ("rgb", "depth", "object_id"):
+        assert np.array_equal(*(getattr(picture, name) for picture in pictures)), name

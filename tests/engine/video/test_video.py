@@ -30,6 +30,7 @@ from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.task.config import DoneConfig
 from eyas.engine.task.direction import TargetDirection
 from eyas.engine.video import run as video
+from eyas.engine.world.config import WorldConfig
 
 # Two trackers, three and a half episodes of 0.2 s each, a frame every 8 ms.
 CONFIG = EyasConfig(
@@ -164,7 +165,7 @@ def test_a_killed_recording_continues_to_the_same_bytes(recorded, tmp_path):
     run = subprocess.Popen([sys.executable, "-c", RUN, CONFIG.model_dump_json(), str(path)])
     while not (path / "DRONE0" / "episode1" / "000010.jpeg").exists():
         assert run.poll() is None, "the recording ended before it could be killed"
-        time.sleep(0.001)
+        time.sleep(0.01)
     run.send_signal(signal.SIGKILL)
     run.wait()
     assert not (path / "dir_info.json").exists()
@@ -184,9 +185,12 @@ def test_a_later_start_does_without_numba(tmp_path):
         update={"overlay": True, "writers": tuple(WRITERS.built_in), "fps": 25.0, "total_time": 0.3}
     )
     lidar = CONFIG.lidar.model_copy(update={"enabled": True})  # for its writer
-    events = CONFIG.camera.events.model_copy(update={"enabled": True})  # for its writer, too
+    few = {"enabled": True, "width": 24, "height": 18}  # for its writer, too
+    events = CONFIG.camera.events.model_copy(update=few)
     camera = CONFIG.camera.model_copy(update={"events": events})
-    config = CONFIG.model_copy(update={"video": with_overlay, "lidar": lidar, "camera": camera})
+    # A small world, which the writer `scene` writes out, too.
+    own = {"video": with_overlay, "lidar": lidar, "camera": camera}
+    config = CONFIG.model_copy(update={**own, "world": WorldConfig(map="simpleway-grass")})
     program = RUN + 'print("numba" in sys.modules)'
     for out in ("first", "later"):
         command = [sys.executable, "-c", program, config.model_dump_json(), str(tmp_path / out)]
@@ -201,7 +205,7 @@ def test_control_c_leaves_whole_files_and_says_how_to_go_on(recorded, tmp_path):
 
     def interrupt() -> None:
         while not (path / "DRONE0" / "episode1" / "000005.jpeg").exists():
-            time.sleep(0.001)
+            time.sleep(0.01)
         os.kill(os.getpid(), signal.SIGINT)
 
     user = threading.Thread(target=interrupt)

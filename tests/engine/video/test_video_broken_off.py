@@ -22,14 +22,17 @@ from eyas.engine.settings.file import save_settings
 from eyas.engine.settings.video import VideoConfig
 from eyas.engine.task.config import DoneConfig
 from eyas.engine.video import run as video
+from eyas.engine.world.config import WorldConfig
 
 pytestmark = pytest.mark.slow  # what its tests share takes long to make
 
 KILLS = int(os.environ.get("EYAS_TEST_KILLS", "4"))
 
-# Two trackers, three episodes of 0.3 s each, a frame every 8 ms.
+# Two trackers, three episodes of 0.3 s each, a frame every 8 ms, where each process loads little.
 CONFIG = EyasConfig(
     seed=5,
+    world=WorldConfig(map="simpleway-grass"),
+    extras=[],
     camera=CameraConfig(width=64, height=48),
     done=DoneConfig(total_steps=150, grace_steps=20),
     video=VideoConfig(
@@ -91,7 +94,7 @@ def test_killed_at_any_moment_it_continues_to_the_same_bytes(settings, tmp_path,
         process = start(settings, out)
         if attempt % 3:  # in the recording; else anywhere, mostly before it
             while not list(out.glob("DRONE*/episode*/*.jpeg")) and process.poll() is None:
-                time.sleep(0.001)
+                time.sleep(0.01)
             latest = 0.4
         time.sleep(moments.uniform(0.0, latest))
         process.kill()
@@ -128,7 +131,7 @@ def begun_with_helpers(settings: Path, out: Path) -> tuple[subprocess.Popen[str]
     """Return a recording whose second process has drawn, and the ids of its own processes."""
     process = start(settings, out, workers=2)
     while not list(out.glob("DRONE1/episode0/*.jpeg")) and process.poll() is None:
-        time.sleep(0.001)
+        time.sleep(0.01)
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
     named = {child: Path(f"/proc/{child}/cmdline").read_bytes() for child in children}
     return process, [int(child) for child in children if b"spawn_main" in named[child]]
@@ -189,7 +192,7 @@ def test_in_a_folder_made_read_only_it_ends_in_one_line_and_goes_on(settings, tm
     process = start(settings, out, *UNPRIVILEGED)
     while not (out / "DRONE1" / "episode1" / "000001.jpeg").exists():
         assert process.poll() is None, process.stderr.read()
-        time.sleep(0.001)
+        time.sleep(0.01)
     folders = [out, *(path for path in out.rglob("*") if path.is_dir())]
     for folder in folders:
         folder.chmod(0o555)

@@ -1,7 +1,7 @@
 """Films of the worst, the median and the best flight of an evaluation."""
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -28,8 +28,13 @@ def chosen_flights(records: Sequence[EpisodeRecord]) -> dict[str, EpisodeRecord]
     return {"worst": ranked[0], "median": ranked[len(ranked) // 2], "best": ranked[-1]}
 
 
-def film(folder: Path, plan: EvaluationPlan, records: Sequence[EpisodeRecord]) -> None:
-    """Write `videos/worst.mp4`, `median.mp4` and `best.mp4`.
+def film(
+    folder: Path,
+    plan: EvaluationPlan,
+    records: Sequence[EpisodeRecord],
+    wanted: Container[str] = ("worst", "median", "best"),
+) -> None:
+    """Write `videos/worst.mp4`, `median.mp4` and `best.mp4`, or only those that are wanted.
 
     The batches of these flights are flown again whole, so that each is the one of its record.
 
@@ -39,7 +44,7 @@ def film(folder: Path, plan: EvaluationPlan, records: Sequence[EpisodeRecord]) -
     videos = folder / FOLDER
     with refusals(videos):
         videos.mkdir(exist_ok=True)
-    chosen = chosen_flights(records)
+    chosen = {name: one for name, one in chosen_flights(records).items() if name in wanted}
     for part in batches(plan):
         rows = {
             name: row

@@ -1,7 +1,8 @@
 """The renderer: pictures, depths, object ids and subject measurements of many views at once."""
 
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from dataclasses import replace
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -43,35 +44,43 @@ from eyas.lanes.vector import WIDTH
 
 
 class CpuRenderer:
-    """Draws a scene and the things that move in it, in bands, with all threads; see `Renderer`."""
+    """Draws a scene and the things that move in it, in bands, with all threads; see `Renderer`.
+
+    What it draws is packed when it is first needed: simulations without pictures never need it.
+    """
 
     def __init__(
         self,
-        geometry: Geometry,  # Everything that can be drawn
-        light: Light,  # Light and air
+        pack: Callable[[], tuple[Geometry, Light]],  # Returns `packed`, the same at each call
     ) -> None:
-        self._geometry, self._light = geometry, light
-        self._held = PackedBundle(geometry), PackedBundle(light)
+        self._pack = pack
         self._last = PackedBundle(_NO_MOVERS), PackedBundle(NO_OUTPUT), PackedBundle(NO_TABLES)
         self._scratch: dict[tuple[object, ...], PackedBundle[Scratch]] = {}
         self._banks: dict[tuple[int, int, int, int], LensBank] = {}
         self._tasks: dict[Size, PackedBundle[Task]] = {}
 
-    @property
+    @cached_property
     def packed(self) -> tuple[Geometry, Light]:
         """Everything that can be drawn, and light and air, as kernels read them."""
-        return self._geometry, self._light
+        return self._pack()
+
+    @cached_property
+    def _held(self) -> tuple[PackedBundle[Geometry], PackedBundle[Light]]:
+        geometry, light = self.packed
+        return PackedBundle(geometry), PackedBundle(light)
 
     def part_reach(self) -> NDArray[np.float64]:
         """Return how far the corners of each part of the library are from its origin [m]."""
-        box = self._geometry.box[self._geometry.part_first :].astype(np.float64)
+        geometry, _ = self.packed
+        box = geometry.box[geometry.part_first :].astype(np.float64)
         far = np.maximum(-box[:, :3], box[:, 3:])
         reach: NDArray[np.float64] = np.sqrt((far * far).sum(axis=1))
         return reach
 
     def influence(self, reach: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the distance up to which things may show [m], see `Renderer`."""
-        sun, air = self._light.weather.sun, self._light.weather.air
+        _, light = self.packed
+        sun, air = light.weather.sun, light.weather.air
         longest, lamps_on = float(air.longest_shadow), bool(air.lamps > 0.0)
         return np.array([_influence(one, sun, longest, lamps_on) for one in reach.tolist()])
 
@@ -129,7 +138,7 @@ class CpuRenderer:
         task = self._tasks.pop(size, None) or PackedBundle(new_task(size))
         band = task.bundle.job.band
         jobs, workers = len(band), min(threads, len(band))
-        set_views(task.bundle, views, float(self._light.weather.fog_density), workers)
+        set_views(task.bundle, views, float(self.packed[1].weather.fog_density), workers)
         bank = self._banks.pop((height, width, *grid), None) if bent else None
         if views.lens is not None:
             bank = bank or LensBank(height, width, *grid)
@@ -171,15 +180,16 @@ class CpuRenderer:
         width, grid = size.width, (size.across, size.down)
         key = (workers, rows, width, grid, slots, measured, face)
         if key not in self._scratch:
+            geometry, light = self.packed
             bent = (workers, 0, 0) if face is None else _plane(workers, rows, width, grid)
             plane = _plane(workers, rows, width, grid)
             if face is not None:
                 plane = _plane(workers, face[1], face[0], grid)
             shade = np.empty((*plane, 4), np.uint8)
-            chunks, fixtures = len(self._geometry.chunk_range), len(self._geometry.fixture_object)
+            chunks, fixtures = len(geometry.chunk_range), len(geometry.fixture_object)
             # What is measured alone takes rows after those of the whole picture.
             instances = min(fixtures + slots * (2 if measured else 1), MOST_INSTANCES)
-            swaying = instances if len(self._light.sway) else 0
+            swaying = instances if len(light.sway) else 0
             line, total = memory(workers, width)
             scratch = Scratch(
                 key=np.zeros(plane, np.int64),
@@ -219,7 +229,14 @@ def build_renderer(
     *,
     cache: Path | None = None,  # Folder of the cache; None: the user's
 ) -> CpuRenderer:
-    """Return a renderer of a scene, its shadows baked."""
+    """Return a renderer of a scene."""
+    return CpuRenderer(partial(pack_scene, scene, geometry, lighting, cache=cache))
+
+
+def pack_scene(
+    scene: Scene, geometry: Geometry, lighting: Lighting, *, cache: Path | None = None
+) -> tuple[Geometry, Light]:
+    """Return what a renderer draws, shadows baked; the arguments are those of `build_renderer`."""
     shadows = bake_shadows(geometry, lighting.sun_direction, scene.terrain.floor, cache)
     tracks = kept_track_map(scene, cache) if lighting.snow > 0 else TrackMap.empty()
     ambient = bake_ambient(scene, cache)
@@ -228,7 +245,7 @@ def build_renderer(
     light = build_light(scene, lighting, Baked(shadows, ambient, land, tracks), geometry)
     if len(light.sway):
         geometry = with_room(geometry, light.sway)
-    return CpuRenderer(geometry, light)
+    return geometry, light
 
 
 Key = TypeVar("Key", bound=Hashable)

@@ -12,7 +12,8 @@ from eyas.engine.core.cache.array_file import let_go
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.render.renderer import build_renderer
+from eyas.engine.render.kernels.bundles import Geometry, Light
+from eyas.engine.render.renderer import CpuRenderer, pack_scene
 from eyas.engine.sensors.obstacles import Solids
 from eyas.engine.sim.cover import cover_of
 from eyas.engine.sim.crowd import NOBODY, Crowd, vehicles_of
@@ -52,6 +53,7 @@ class Assets:
     traffic: TrafficSource
     lighting: Lighting
     renderer: Renderer
+    """Eyas' own packs what it draws at the first call of a method."""
     rigs: Rigs
     solids: Callable[[], Solids]
     """Returns what rays and bodies may meet, loaded when it is first asked for."""
@@ -220,9 +222,12 @@ def _vehicles(
 
 @lru_cache(maxsize=8)
 def _renderer(world: WorldConfig, kinds: tuple[int, ...], lenses: Lenses) -> Renderer:
-    recipe = MAPS.get(world.map)
-    season = recipe.season(world.weather)
-    return build_renderer(
+    return CpuRenderer(partial(_packed, world, kinds, lenses))
+
+
+def _packed(world: WorldConfig, kinds: tuple[int, ...], lenses: Lenses) -> tuple[Geometry, Light]:
+    season = MAPS.get(world.map).season(world.weather)
+    return pack_scene(
         load_scene(world.map, world.seed, season),
         load_geometry(world.map, world.seed, season, kinds, lenses=lenses),
         _lighting(world),

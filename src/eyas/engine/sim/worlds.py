@@ -1,5 +1,7 @@
 """The worlds of N trackers: which tracker is in which, and models and colours of the actors."""
 
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -88,15 +90,20 @@ class Worlds:
         self.looks = Looks(
             np.zeros((worlds, actors), np.int32), np.ones((worlds, actors, 3), np.float32)
         )
-        renderer, rigs = assets.renderer, assets.rigs
-        far, lights = renderer.part_reach(), None
-        reach = renderer.influence(rigs.reach(far))
+
+    @cached_property
+    def _near(self) -> VisibleActors:
+        """Lists the actors of a picture; made with the first one, as it needs the renderer."""
+        assets, lights = self._assets, None
+        far = assets.renderer.part_reach()
+        reach = assets.renderer.influence(assets.rigs.reach(far))
         if assets.signals is not None:
             lights = NearLights(assets.signals, float(far[assets.signals.first_part :].max()))
         wet = assets.lighting.spray > 0.0
-        self._near = VisibleActors(
+        known = getattr(assets.traffic, "own", None)
+        return VisibleActors(
             assets.traffic.motion,
-            rigs,
+            assets.rigs,
             self.looks,
             reach,
             spray=wet,

@@ -140,12 +140,14 @@ def _record_share(config: EyasConfig, folder: Path, share: Share) -> RecordedSha
 
 def _built(config: EyasConfig) -> Simulation:
     try:
-        return build_simulation(recording_rules(config), together(config.video.channels))
+        sim = build_simulation(recording_rules(config), together(config.video.channels))
     except ConfigError as error:
         frames = config.video.episode_frames
         if frames is None or not str(error).startswith("done.total_steps"):
             raise
         raise ConfigError(f"video.episode_frames: {frames} are too many: {error}") from None
+    sim.view.pictures.prepare()  # so that further processes find in the cache what is drawn
+    return sim
 
 
 def _record(

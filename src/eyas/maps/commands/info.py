@@ -229,6 +229,6 @@ def make_another(name: str, seed: int, *, left_hand: bool = False) -> list[str]:
         raise ConfigError(f"--drive-on: 'left' is not allowed for {name!r}; allowed for: {known}")
     map_name = MAPS.get(name).name + (LEFT_ENDING if left_hand else "")
     world = WorldConfig(map=map_name, seed=seed)
-    load_assets(world, TrafficConfig(), 1)
+    load_assets(world, TrafficConfig(), 1).renderer.part_reach()  # makes what is drawn, too
     told = [line for line in describe(map_name, seed) if not line.startswith("recorded traffic")]
     return [*told, f"use it with --map {world.map} --set world.seed={seed}"]

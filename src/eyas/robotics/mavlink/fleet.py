@@ -70,6 +70,7 @@ class Fleet(Face):
         count = simulation.count
         self._commands, self._angles = np.zeros((count, 4)), np.zeros((count, 2))
         self._senders = self._video()
+        simulation.view.pictures.prepare()  # not in flight, where time goes on
         self._pitch = np.full(count, 0.5)
         simulation.reset()
         self._fields = simulation.snapshot.cameras.field_of_view.copy()

@@ -73,7 +73,7 @@ def pack(folder: Path, out: Path | None = None) -> Packed:
         notes.append("without a film (extra video)")
     else:
         if not (folder / _MEDIAN).is_file():
-            film(folder, plan, records)
+            film(folder, plan, records, wanted=("median",))
         files[_MEDIAN] = folder / _MEDIAN
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:

@@ -9,6 +9,7 @@ refers to what it names, as in tables of what is imported late.
 import ast
 import re
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple, cast
 
@@ -144,6 +145,7 @@ def _changed(node: ast.AST) -> Iterator[str]:
                 yield inner.id
 
 
+@lru_cache(maxsize=1)  # asked for twice of each statement
 def _walked(node: ast.AST) -> list[ast.AST]:
     """Return the parts of a tree in the order of `ast.walk`, which takes four times as long."""
     found = [node]
@@ -172,29 +174,37 @@ def _is_message(node: object) -> bool:
     )
 
 
-def _parts(node: ast.AST) -> Iterator[tuple[str, object]]:
-    """Yield what counts of a part of a tree, field by field."""
+def _parts(node: ast.AST) -> list[tuple[str, object]]:
+    """Return what counts of a part of a tree, field by field."""
     if isinstance(node, ast.Raise):  # what is raised, not the text
-        yield "exc", node.exc.func if isinstance(node.exc, ast.Call) else node.exc
-    elif isinstance(node, ast.Assert):
-        yield "test", node.test
-    else:
-        for name in node._fields:
-            value = getattr(node, name, None)
-            if isinstance(value, list):
-                value = [part for part in value if not _is_message(part)]
-            if value is not None and value != [] and name not in _SILENT:
-                yield name, value
+        return [("exc", node.exc.func if isinstance(node.exc, ast.Call) else node.exc)]
+    if isinstance(node, ast.Assert):
+        return [("test", node.test)]
+    found: list[tuple[str, object]] = []
+    for name in node._fields:
+        value = None if name in _SILENT else getattr(node, name, None)
+        if isinstance(value, list):
+            value = [part for part in value if not _is_message(part)]
+        if value is not None and value != []:
+            found.append((name, value))
+    return found
 
 
 _SILENT = frozenset(("ctx", "type_comment", "type_params", "kind"))
 
 
-def _read(node: ast.AST, *, annotation: bool = False) -> Iterator[str]:
-    """Yield the names that are read, each with the attributes that are read, and texts of paths."""
+def _read(node: ast.AST) -> list[str]:
+    """Return the names that are read, each with attributes that are read, and texts of paths."""
+    found: list[str] = []
+    _add_read(node, found, annotation=False)
+    return found
+
+
+def _add_read(node: ast.AST, found: list[str], *, annotation: bool) -> None:
+    """Add what `_read` returns."""
     if isinstance(node, ast.Name):
-        # What a class or a function binds is its own.
-        yield from (node.id,) if isinstance(node.ctx, ast.Load) else ()
+        if isinstance(node.ctx, ast.Load):  # what a class or a function binds is its own
+            found.append(node.id)
     elif isinstance(node, ast.Attribute):
         names: list[str] = []
         inner: ast.AST = node
@@ -202,28 +212,29 @@ def _read(node: ast.AST, *, annotation: bool = False) -> Iterator[str]:
             names.append(inner.attr)
             inner = inner.value
         if isinstance(inner, ast.Name):
-            yield ".".join([inner.id, *reversed(names)])
+            found.append(".".join([inner.id, *reversed(names)]))
         else:
-            yield from _read(inner, annotation=annotation)
+            _add_read(inner, found, annotation=annotation)
     elif isinstance(node, ast.Constant):
         if isinstance(node.value, str):
-            yield from _read_text(node.value, annotation=annotation)
+            _add_read_text(node.value, found, annotation=annotation)
     else:
         for name, value in _parts(node):
             typed = annotation or name in ("annotation", "returns")
             for part in value if isinstance(value, list) else [value]:
                 if isinstance(part, ast.AST):
-                    yield from _read(part, annotation=typed)
+                    _add_read(part, found, annotation=typed)
 
 
-def _read_text(text: str, *, annotation: bool) -> Iterator[str]:
+def _add_read_text(text: str, found: list[str], *, annotation: bool) -> None:
     if annotation:
         try:
-            yield from _read(tree_of(text, mode="eval"), annotation=True)
+            tree = tree_of(text, mode="eval")
         except SyntaxError:  # a text among the arguments of `Literal` or `Annotated`
             return
+        _add_read(tree, found, annotation=True)
     elif _PATH.fullmatch(text):
-        yield text
+        found.append(text)
 
 
 def _texts(node: ast.AST) -> str:

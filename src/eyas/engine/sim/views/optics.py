@@ -46,7 +46,7 @@ class ThermalViews:
         self._temperatures = SurfaceTemperatures(assets.lighting, hour)
         classes = assets.scene.object_class
         self._imager = ThermalImager(config, self._temperatures, classes)
-        self._renderer, self._reach = assets.renderer, assets.renderer.part_reach()
+        self._renderer = assets.renderer
         self._fog = float(assets.lighting.fog_density)
         self._seed = np.zeros(count, np.int64)
 
@@ -83,7 +83,7 @@ class ThermalViews:
             ray=1.0 / views.focal(*picture_size(shown)),
             lens=np.zeros((0, 10)) if views.lens is None else views.lens,
             world=views.world,
-            heat=slot_heat(movers, self._reach, self._temperatures.air),
+            heat=slot_heat(movers, self._renderer.part_reach(), self._temperatures.air),
             fog=fog if views.light is None else views.light.fog_density,
             seed=self._seed[trackers],
             step=step[trackers],

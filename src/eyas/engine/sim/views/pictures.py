@@ -77,6 +77,10 @@ class PictureDrawer:
             steady, vibration = state.steady, state.vibration
             self._exposures = Exposures(optics.shutter, steady, vibration, self.aspect, self)
 
+    def prepare(self) -> None:
+        """Make now what the first picture needs, so that it does not come late."""
+        self._renderer.part_reach()
+
     def draw(
         self,
         chosen: Chosen,  # The trackers, shape (V,)

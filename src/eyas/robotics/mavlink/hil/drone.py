@@ -53,6 +53,7 @@ class DrivenDrone:
             place = parsed_address(config.video, "mavlink.video")
             how = camera.height, camera.width, config.picture_rate, config.video_quality
             self._video = VideoSender(VideoStream(place, *how), 1)
+            simulation.view.pictures.prepare()  # not in flight, where time goes on
         simulation.reset()
         self._place = standing_places(simulation)
         self.begin()
