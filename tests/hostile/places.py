@@ -140,7 +140,7 @@ READERS = {
     "datasets.tracking.sequences:_rate_of": "sequence facts",
     "datasets.tracking.sequences:_uav123_parts": "sequence facts",
     "datasets.tracking.sequences:read_truth": "sequence",
-    "datasets.tracking.run:_scored": "boxes",
+    "datasets.tracking.run:_read_boxes": "boxes",
     "engine.settings.file:_parsed": "settings",
     "engine.traffic.net_file:SumoNet.__init__": "roads",
     "engine.traffic.recording_file:RecordingFile.outline": "traffic",

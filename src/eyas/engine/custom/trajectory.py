@@ -119,7 +119,7 @@ def read_table(path: Path) -> list[Track]:
     named = [_column(name) for name in lines[0]] if lines else []
     names = [name for name, _ in named]
     on_earth = "latitude" in names or "longitude" in names
-    needed = ("t", "latitude", "longitude") if on_earth else COLUMNS[:3]
+    needed: tuple[str, ...] = ("t", "latitude", "longitude") if on_earth else COLUMNS[:3]
     if not on_earth and "id" not in names:  # a list of towns is no track
         needed = needed[1:]  # without times it goes at one speed
     missing = [name for name in needed if name not in names]

@@ -108,10 +108,23 @@ class Report:
                               ("mended or left out", self.broken),
                               ("left out", self.left_out)):  # fmt: skip
             if counted:
-                parts = ", ".join(f"{count} {what}" for what, count in sorted(counted.items()))
+                parts = ", ".join(
+                    f"{count} {_ONE.get(what, what) if count == 1 else what}"
+                    for what, count in sorted(counted.items())
+                )
                 made.append(f"{word}: {parts}")
         return [*made, self.side, self.traffic, *self.notices]
 
+
+_ONE = {
+    "heights": "height",
+    "roofs": "roof",
+    "heights of trees": "height of a tree",
+    "buildings beyond the area": "building beyond the area",
+    "streets beyond the area": "street beyond the area",
+    "short streets without a way to others": "short street without a way to others",
+}
+"""Words of a report for a single thing."""
 
 ATTRIBUTION = """\
 © OpenStreetMap contributors
