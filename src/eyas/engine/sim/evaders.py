@@ -218,7 +218,7 @@ class Evaders:
         traffic, period = self._traffic, 1.0 / self._traffic.motion.rate
         others = None
         if not self._walks:
-            others = self._others(rows, traffic.known[rows] * period)
+            others = self._others(rows, np.asarray(traffic.known[rows] * period, np.float64))
         if self._fixed is not None:
             seen = self._seen(rows, rows, others)
             self.actions[rows] = self._fixed.actions(rows, seen, period)

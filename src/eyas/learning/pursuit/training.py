@@ -83,7 +83,7 @@ class Player:
                 entropy = -(all_log.exp() * all_log).sum(1).mean()
                 loss = policy_loss + config.vf_coef * value_loss - ppo.ent_coef * entropy
                 self.optimiser.zero_grad()
-                loss.backward()  # type: ignore[no-untyped-call]
+                loss.backward()
                 torch.nn.utils.clip_grad_norm_(self.network.parameters(), config.max_grad_norm)
                 self.optimiser.step()
         return float(entropy.detach())
@@ -104,11 +104,12 @@ class Moves(NamedTuple):
         """Return room for decisions."""
         plane = steps, count
         return cls(
-            torch.zeros(*plane, inputs),
-            torch.zeros(plane, dtype=torch.long),
-            *(torch.zeros(plane) for _ in range(2)),
-            torch.zeros(steps + 1, count),
-            torch.zeros(plane),
+            seen=torch.zeros(*plane, inputs),
+            actions=torch.zeros(plane, dtype=torch.long),
+            log_probability=torch.zeros(plane),
+            rewards=torch.zeros(plane),
+            values=torch.zeros(steps + 1, count),
+            ended=torch.zeros(plane),
         )
 
     def advantages(self, gamma: float, gae_lambda: float) -> Tensor:
