@@ -111,9 +111,10 @@ for names in ([], ["compass"], ["barometer"], ["compass", "barometer"], ["barome
     simulation = build_simulation(SimConfig(sensors=sensors), each_alone(1))
     simulation.reset()
     simulation.advance(np.zeros((1, 4)), 1)
-hil = EyasConfig(tracker={"supervised": False, "ground_contact": True})
-hil = equipped(updated(hil, {"start": {"velocity": "rest"}}), MavlinkConfig.of(hil), noisy=True)
-simulation = build_simulation(hil, together(1), tracker=driven_drone(hil.tracker))
+driven = EyasConfig(tracker={"supervised": False, "ground_contact": True})
+driven = updated(driven, {"start": {"velocity": "rest"}})
+driven = equipped(driven, MavlinkConfig.of(driven), noisy=True)
+simulation = build_simulation(driven, together(1), tracker=driven_drone(driven.tracker))
 simulation.reset()
 simulation.advance(np.zeros((1, 4)), 1)  # as an autopilot does
 fill_privileged(simulation.snapshot, np.zeros((1, 16), np.float32))

@@ -22,6 +22,7 @@ import warnings
 import zipfile
 import zlib
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -165,7 +166,9 @@ def _plan(folder, chance, most):
     return of_json(path, read, chance, most)
 
 
+@cache
 def gzip_bomb() -> bytes:
+    """Return zeros, packed once for all rows: that takes longer than to refuse them."""
     return gzip.compress(bytes(BOMB), 1)
 
 
@@ -304,6 +307,7 @@ def _network(folder, chance, most):
     return of_bytes(path, read, chance, most, *spoilt(), good[:100])
 
 
+@cache
 def npz_bomb() -> bytes:
     """Return an npz whose array claims to be as large as it is."""
     buffer = io.BytesIO()
@@ -527,11 +531,11 @@ def _of_tracks(name: str, content: bytes):
             for _, each in on_map([path], Placement("here", None, (0.0, 0.0, 0.5), 2.0)):
                 each.at(np.linspace(0.0, each.time[-1], 50))
 
-        bombs = [gzip.compress(bytes(BOMB))]
+        bombs: list[Any] = [gzip_bomb]
         if name in TRACKS:
             bombs += with_words(TRACKS[name], ABSURD_WORDS)
         if name == "a.kmz":
-            bombs = [zipped(b"doc.kml", bytes(BOMB))]
+            bombs = [lambda: zipped(b"doc.kml", bytes(BOMB))]
         return of_bytes(path, read, chance, most, *bombs)
 
     return make
@@ -539,7 +543,7 @@ def _of_tracks(name: str, content: bytes):
 
 def zipped(name: bytes, content: bytes) -> bytes:
     archive = io.BytesIO()
-    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as file:
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as file:
         file.writestr(name.decode(), content)
     return archive.getvalue()
 
@@ -971,10 +975,14 @@ def of_frame(folder, name: str, pattern: str, *bombs: Callable[[bytes], bytes]) 
     return path, getattr(frame, name), [bomb(content) for bomb in bombs]
 
 
+@cache
+def deflated_zeros() -> bytes:
+    return zlib.compress(bytes(BOMB), 1)
+
+
 def png_bomb(content: bytes) -> bytes:
     """Return a PNG of the same size in its header, whose data unpack to much."""
-    machine = zlib.compressobj(1)
-    data = machine.compress(bytes(BOMB)) + machine.flush()
+    data = deflated_zeros()
     check = zlib.crc32(b"IDAT" + data).to_bytes(4, "big")
     return content[:33] + len(data).to_bytes(4, "big") + b"IDAT" + data + check + content[-12:]
 
