@@ -320,8 +320,8 @@ def _numbers_in(pickle: bytes) -> int | None:
         for code, value, _ in pickletools.genops(pickle[:_OPERATIONS]):
             if code.name == "BINPERSID":
                 found = []
-            elif found is not None and code.name.startswith("BININT"):
-                found.append(int(value))
+            elif found is not None and isinstance(value, int):
+                found.append(value)
             elif found is not None and "TUPLE" in code.name:
                 shapes.append(found[1:])  # behind the offset in the storage
                 found = None
