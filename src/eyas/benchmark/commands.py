@@ -260,7 +260,7 @@ def compare(
     for name, stamp in (("A", stamp_a), ("B", stamp_b)):
         typer.echo(f"{name}: {stamp.plan.command} (Eyas {stamp.version}, build {stamp.build.id})")
     print_ending(
-        text_of(found), ("see their flights on a page", ("eyas", "leaderboard", "page", "FOLDER"))
+        text_of(found), ("rank both on a page", ("eyas", "leaderboard", "page", "FOLDER"))
     )
 
 
