@@ -259,9 +259,7 @@ def compare(
         typer.echo(line)
     for name, stamp in (("A", stamp_a), ("B", stamp_b)):
         typer.echo(f"{name}: {stamp.plan.command} (Eyas {stamp.version}, build {stamp.build.id})")
-    print_ending(
-        text_of(found), ("rank both on a page", ("eyas", "leaderboard", "page", "FOLDER"))
-    )
+    print_ending(text_of(found), ("rank both on a page", ("eyas", "leaderboard", "page", "FOLDER")))
 
 
 leaderboard = typer.Typer(help="Rank evaluations, and fly those of others again.")
