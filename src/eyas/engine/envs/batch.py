@@ -102,7 +102,7 @@ class Evading:
         """Add the rewards of a control step, of the trackers that run."""
         gained = -reward
         if self._terms is not None:
-            gained = simulation.evader_reward(self._terms)
+            gained = self._terms.of(simulation.snapshot)[0]
         self.reward += np.where(running, gained, 0.0)
 
 

@@ -54,7 +54,8 @@ class EvaderObserver:
             self.latest[trackers] = self._evaders.observe(trackers.astype(np.int64))
             return self.latest
         picture = Picture.create(len(trackers), *self._size)
-        self._simulation.draw_for_evaders(trackers, self._cameras(trackers), picture)
+        cameras = self._cameras(trackers)
+        self._simulation.draw_from(trackers, cameras, picture, overlay=False, bodies=True)
         self.latest[trackers] = picture.rgb
         return self.latest
 

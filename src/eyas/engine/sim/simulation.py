@@ -396,6 +396,7 @@ class Simulation:
         picture: Picture,
         *,
         overlay: bool = True,
+        bodies: bool = False,
     ) -> None:
         """Draw the worlds of some trackers from any camera, for example from behind the drone.
 
@@ -405,6 +406,8 @@ class Simulation:
             cameras: V cameras.
             picture: V pictures with colours, of any size; pixels are square.
             overlay: Whether to draw all trackers of that world and their overlays over the colours.
+            bodies: Whether the bodies of all trackers of that world are there, where they have some
+                to be seen: in shared worlds, and where the target sees pictures (`evader.sees`).
 
         Raises:
             EyasError: A number of a camera is not finite.
@@ -415,17 +418,7 @@ class Simulation:
             field_of_view=_checked_fields(cameras.field_of_view),
         )
         chosen, rules = np.asarray(trackers, np.int32), self.rules if overlay else None
-        self._present.pictures.draw_from(chosen, cameras, picture, rules)
-
-    def draw_for_evaders(
-        self, trackers: NDArray[np.int32], cameras: CameraState, picture: Picture
-    ) -> None:
-        """Draw what cameras on the targets of trackers see, the trackers among it."""
-        self._present.pictures.draw_from(trackers, cameras, picture, None, bodies=True)
-
-    def evader_reward(self, terms: RewardTerms) -> Floats:
-        """Return the sum of terms of a target's reward now, shape (N,)."""
-        return terms.of(self.snapshot)[0]
+        self._present.pictures.draw_from(chosen, cameras, picture, rules, bodies=bodies)
 
     def close(self) -> None:
         """End live traffic, if that is what drives; may be called twice."""
