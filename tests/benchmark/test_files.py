@@ -169,7 +169,7 @@ def test_what_a_model_was_trained_with_travels_with_it(tmp_path, caplog):
             assert policy.env == TrackingEnv(config).config.env
         else:
             assert policy.env.observation.frames == 2
-        assert "start.height=30.0" in caplog.text
+        assert "start.height" not in caplog.text  # where flights begin is the protocol's matter
         assert "control.frequency=62.5" in caplog.text
         changed = Sb3Policy(tmp_path / "model.zip", {"action_repeat": 2}, sampled=False)
         assert changed.env.action_repeat == 2

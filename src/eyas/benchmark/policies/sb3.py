@@ -105,7 +105,7 @@ def _tell_others(path: Path, trained: Mapping[str, Any]) -> None:
         f"{group}.{name}={shown(value)}"
         for group in ELSEWHERE
         for name, value in _part(trained, group).items()
-        if (group, name) == ("start", "velocity") or group != "start"
+        if group != "start" or name == "velocity"
     ]
     if others:
         _LOG.warning(
