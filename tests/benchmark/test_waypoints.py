@@ -319,7 +319,10 @@ def test_a_policy_on_this_machine_without_its_files_is_one_line(tmp_path):
     for content, line in (
         ({"lerobot": "nowhere"}, "lerobot: no config.json in the folder .*nowhere"),
         ({"lerobot": "x", "rate": 0.0}, "rate: 0.0 is not allowed"),
-        ({"lerobot": "x", "transformers": "y"}, "lerobot"),
+        ({"lerobot": "x", "transformers": "y"}, "not lerobot and transformers"),
+        ({}, "one of lerobot, transformers and url is allowed, not none of them"),
+        ({"url": "http://a"}, "model: missing, allowed: text, not empty"),
+        ({"url": "file:///etc", "model": "m"}, "'file:///etc' is not allowed: an address, http"),
         ({"transformers": "y", "device": "gpu"}, "device: 'gpu' is not allowed"),
     ):
         path.write_text(json.dumps(content))

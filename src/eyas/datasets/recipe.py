@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Field, model_validator
 
 from eyas.engine.behaviours.config import ExtraConfig
+from eyas.engine.core.allowed import TextForm
 from eyas.engine.core.config import Config, updated, validated
 from eyas.engine.core.errors import ConfigError, UnknownNameError
 from eyas.engine.core.named_code import NAMES_CODE, code_named
@@ -89,7 +90,11 @@ class Recipe(Config):
     Of lists such as `weathers`, each part takes one value; all values come equally often.
     """
 
-    name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")]
+    name: Annotated[
+        str,
+        Field(pattern=r"^[a-z0-9][a-z0-9-]{0,63}$"),
+        TextForm("up to 64 small letters, digits and hyphens"),
+    ]
     """Name of the data set: lower-case letters, digits, hyphens."""
     title: Annotated[str, Field(min_length=1, max_length=200)]
     """Name for people."""
@@ -97,10 +102,15 @@ class Recipe(Config):
     """What it is for, for the datasheet."""
     licence: Literal["cc0-1.0", "cc-by-4.0", "cc-by-sa-4.0", "mit", "odbl"] = "cc-by-4.0"
     """Licence of the data, which their maker chooses."""
-    date: Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\d$")] | None = None
+    date: Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\d$"), TextForm("YYYY-MM-DD")] | None = None
     """Day of publication, YYYY-MM-DD, for the metadata; the clock is never asked, so that the same
     recipe gives the same bytes."""
-    url: Annotated[str, Field(pattern=r"^https?://\S+$")] | None = None
+    url: (
+        Annotated[
+            str, Field(pattern=r"^https?://\S+$"), TextForm("an address, http:// or https://")
+        ]
+        | None
+    ) = None
     """Where it is published, for the metadata."""
     seed: Annotated[int, Field(ge=0, lt=2**62)] = 0
     """Seed of the first part; the others have the next ones."""

@@ -17,6 +17,7 @@ from urllib.parse import urlsplit
 from pydantic import Field
 
 from eyas.benchmark.policies.waypoints import Look, Picture, WaypointPolicy, way_of
+from eyas.engine.core.allowed import TextForm
 from eyas.engine.core.codecs.png import png_bytes
 from eyas.engine.core.config import Config, validated
 from eyas.engine.core.decoding import decoded_json, read_json
@@ -71,7 +72,9 @@ class AskedConfig(Config):
 class ChatFile(AskedConfig):
     """A model behind an endpoint, by the file that describes it."""
 
-    url: Annotated[str, Field(pattern=r"^https?://\S+$")]
+    url: Annotated[
+        str, Field(pattern=r"^https?://\S+$"), TextForm("an address, http:// or https://")
+    ]
     """Base of the endpoint, such as http://localhost:8000/v1."""
     model: Annotated[str, Field(min_length=1, max_length=500)]
     timeout: Annotated[float, Field(gt=0, le=600)] = 60.0
@@ -220,7 +223,11 @@ def open_agent(path: Path, changes: Mapping[str, Any], *, sampled: bool = False)
     if not isinstance(content, dict):
         raise DataFileError(f"{path}: not a JSON object")
     try:
-        if len(LOCAL & content.keys()) == 1:
+        kinds = sorted({"url", *LOCAL} & content.keys())
+        if len(kinds) != 1:
+            found = " and ".join(kinds) if kinds else "none of them"
+            raise ConfigError(f"one of lerobot, transformers and url is allowed, not {found}")
+        if kinds[0] in LOCAL:
             from eyas.benchmark.policies.local_model import local_agent
 
             return local_agent(content, changes, path)

@@ -14,6 +14,7 @@ from pydantic import Field
 
 from eyas.benchmark.policies.chat_agent import AskedAgent, AskedConfig
 from eyas.benchmark.policies.waypoints import Look, Picture, WaypointPolicy
+from eyas.engine.core.allowed import TextForm
 from eyas.engine.core.config import Config, shown, validated
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import ConfigError, DataFileError
@@ -22,7 +23,9 @@ _LARGEST = 1 << 24  # Largest JSON file of a model [bytes]
 _STATE = "observation.state"
 _NUMBERS = 4  # Of an action: ahead, left, up [m/s], turn to the left [rad/s]
 
-Device = Annotated[str, Field(pattern=r"^(cpu|mps|cuda(:[0-9]{1,3})?)$")]
+Device = Annotated[
+    str, Field(pattern=r"^(cpu|mps|cuda(:[0-9]{1,3})?)$"), TextForm("cpu, mps, cuda or cuda:N")
+]
 
 
 class TransformersFile(AskedConfig):

@@ -199,7 +199,7 @@ def worst_fifth_of(values: ArrayLike, clusters: Clusters) -> Estimate:
     return Estimate(len(array), clusters.count, mean, spread)
 
 
-_ELO = math.log(10.0) / 400.0  # Of Elo's scale: 400 points are odds of ten to one
+_ELO = 2.302585092994046 / 400.0  # log(10) / 400, of Elo's scale: 400 points are odds of ten to one
 _MOST = 800.0  # Distance to the strongest and the weakest opponent beyond which nobody is rated
 
 

@@ -2,7 +2,6 @@
 
 import io
 import json
-import math
 import multiprocessing
 import warnings
 from collections.abc import Iterator, Sequence
@@ -48,6 +47,8 @@ from eyas.lanes import thread_count
 SCORING, RESULTS, BOXES = "tracking.json", "results.json", "boxes"
 """What was asked, the figures, and the folder with a file of boxes for each episode."""
 
+_BOX = "left,top,width,height [pixels]"
+_FURTHEST = 1e6  # Largest number of a box [pixels]
 _LARGEST_BOXES = 1 << 28  # Largest file of boxes [bytes]
 SPEED = "timing.json"  # How fast the tracker was here; the one file that does not repeat
 
@@ -64,6 +65,9 @@ class Scoring:
         only: Pattern of the names of clips that are used, as of files; None: all.
         truth: The file of the true boxes of a film, or of a folder of pictures.
         box: Left, top, width, height of the target in the first picture, in place of `truth`.
+
+    Raises:
+        ConfigError: The box is none with an area.
     """
 
     tracker: str
@@ -74,19 +78,26 @@ class Scoring:
     truth: Path | None = None
     box: tuple[float, float, float, float] | None = None
 
+    def __post_init__(self) -> None:
+        """Refuse a box without an area, or far from any picture."""
+        if self.box is None:
+            return
+        box = np.asarray(self.box, np.float64)
+        if box.shape != (4,) or not (np.abs(box) <= _FURTHEST).all() or (box[2:] <= 0.0).any():
+            said = ",".join(map(str, self.box))
+            raise ConfigError(f"--box: {said!r:.80} is not allowed: {_BOX}")
+
 
 def parsed_box(text: str) -> tuple[float, float, float, float]:
-    """Return the box that a text gives as `left,top,width,height`.
+    """Return the box that a text gives as `left,top,width,height`; see `Scoring`.
 
     Raises:
-        ConfigError: It is no box with an area.
+        ConfigError: It is not four numbers.
     """
     try:
         left, top, width, height = (float(cell) for cell in text.split(","))
     except ValueError:
-        left, top, width, height = (math.nan,) * 4
-    if not (max(abs(left), abs(top), width, height) <= 1e6 and min(width, height) > 0.0):
-        raise ConfigError(f"--box: {text!r:.80} is not allowed: left,top,width,height [pixels]")
+        raise ConfigError(f"--box: {text!r:.80} is not allowed: {_BOX}") from None
     return left, top, width, height
 
 
@@ -279,7 +290,7 @@ def _results(scoring: Scoring, episodes: Sequence[Clip], out: Path) -> dict[str,
             for value, chosen in values.items():
                 samples = strata.setdefault(criterion, {}).setdefault(value, [])
                 samples.append((overlap[counts & chosen], error[counts & chosen]))
-    told_as = published_figures(published)
+    told_as = None if scoring.box is not None else published_figures(published)
     return {
         "tracker": scoring.tracker,
         "data": scoring.folder.resolve().name,

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, ValidationError
 from pydantic.fields import FieldInfo
-from pydantic_core import CoreSchema, ErrorDetails
+from pydantic_core import CoreSchema, ErrorDetails, PydanticUndefined
 
 from eyas.engine.core.allowed import describe, names_of
 from eyas.engine.core.errors import ConfigError, UnknownNameError, nearest
@@ -90,6 +90,8 @@ class Problem:
             hint = nearest(self.path[-1], self.names)
             known = ", ".join(self.names)
             return ConfigError(f"{path}: unknown key{hint}; known: {known}{self._further()}")
+        if self.value is PydanticUndefined:
+            return ConfigError(f"{path}: missing, allowed: {self.allowed}")
         if self.names and isinstance(self.value, str):
             return UnknownNameError(path, self.value, self.names, others=self.instead)
         return ConfigError(f"{path}: {shown(self.value)} is not allowed: {self.allowed}")

@@ -84,9 +84,10 @@ def evader_actions(actions: Any, count: int, name: str = "actions") -> Floats:  
         ActionError: They are none, or not finite.
     """
     try:
-        array = np.asarray(actions, np.float64)
+        array = np.asarray(actions)
     except (TypeError, ValueError):
         array = np.zeros(0)
-    if array.shape != (count, 2) or not np.isfinite(array).all():
+    real = array.dtype.kind in "biuf"
+    if array.shape != (count, 2) or not real or not np.isfinite(array).all():
         raise ActionError(f"{name}: {str(actions)!r:.80} is not allowed: two finite numbers each")
-    return array
+    return array.astype(np.float64)

@@ -83,7 +83,7 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
         evading = targets_act(agents)
         if num_drones is None:
             num_drones = 1 if evading else 2
-        if num_drones < 1:
+        if not isinstance(num_drones, int | np.integer) or num_drones < 1:
             raise ConfigError(
                 f"num_drones: {num_drones} is not allowed: a whole number, at least 1"
             )
@@ -169,9 +169,11 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
         if not self.agents:  # as other environments of PettingZoo do
             return {}, {}, {}, {}, {}
         if set(actions) != set(self.agents):
+            missing = [agent for agent in self.agents if agent not in actions]
+            others = [str(agent) for agent in actions if agent not in self.agents]
+            wrong = f"no {', '.join(missing)}" if missing else f"{', '.join(others):.80}"
             raise ActionError(
-                f"actions: {', '.join(map(str, actions)) or 'none'}: not allowed: one for each of "
-                f"{', '.join(self.agents)}"
+                f"actions: {wrong}: not allowed: one for each of {', '.join(self.agents)}"
             )
         active = np.array([agent in actions for agent in self._drones])
         rest = hover_action(self._batch.actions.space)

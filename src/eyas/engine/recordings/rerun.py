@@ -221,7 +221,7 @@ def _started() -> str:
         until = time.monotonic() + _START
         while viewer.poll() is None and _unreachable(_OWN):
             if time.monotonic() > until:
-                os.killpg(viewer.pid, signal.SIGKILL)  # its program is a child of it
+                _stop(viewer)
             time.sleep(0.05)
         with suppress(subprocess.TimeoutExpired):
             viewer.wait(_SETTLE)
@@ -230,6 +230,14 @@ def _started() -> str:
             return ""
         output.seek(0)
         return output.read().decode(errors="replace").strip().rpartition(": ")[2] or "no word"
+
+
+def _stop(viewer: "subprocess.Popen[bytes]") -> None:
+    """Stop a viewer and its program, which is a child of it; on Windows only the former."""
+    if hasattr(os, "killpg"):
+        os.killpg(viewer.pid, signal.SIGTERM)
+    else:
+        viewer.kill()
 
 
 @contextmanager

@@ -110,10 +110,9 @@ class SteeredCars:
         old = self.speed[rows]
         wanted = np.clip(wanted, 0.0, TOP_SHARE * ways.limit[self.piece[rows]])
         gap, pace = self.leader(rows, ahead, others)
-        safe = -_BRAKING * _REACTION + np.sqrt(
-            (_BRAKING * _REACTION) ** 2 + pace * pace + 2.0 * _BRAKING * np.maximum(gap, 0.0)
-        )
-        curve = np.sqrt(ahead.fastest**2 + 2.0 * _BRAKING * ahead.distance).min(axis=1)
+        late = _BRAKING * _REACTION
+        safe = np.sqrt(late * late + pace * pace + 2.0 * _BRAKING * np.maximum(gap, 0.0)) - late
+        curve = np.sqrt(ahead.fastest * ahead.fastest + 2.0 * _BRAKING * ahead.distance).min(axis=1)
         new = np.minimum(np.minimum(wanted, curve), safe)
         new = np.clip(new, old - _EMERGENCY * period, old + _ACCELERATION * period)
         easy = np.maximum(np.minimum(wanted, curve), old - _BRAKING * period)
