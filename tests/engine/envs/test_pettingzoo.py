@@ -60,9 +60,7 @@ def test_a_drone_whose_episode_has_ended_leaves_and_hovers_while_the_others_fly(
     assert info["drone_0"]["done_reason"] == "height"
     assert (terminated["drone_1"], truncated["drone_0"]) == (False, False)
     assert env.agents == ["drone_1"]
-    with pytest.raises(
-        EyasError, match=r"^actions: drone_0: not allowed: one .* drone_1$"
-    ):
+    with pytest.raises(EyasError, match=r"^actions: drone_0: not allowed: one .* drone_1$"):
         env.step({"drone_0": up, "drone_1": stay})
     where = env._batch._simulation.snapshot.trackers.position
     high, time = where[0].copy(), env._batch._simulation.snapshot.episodes.tick.copy()
