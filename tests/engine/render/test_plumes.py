@@ -36,7 +36,7 @@ def fast(speed: float, x: float = 20.0) -> DrawList:
 
 
 def test_smoke_rises_drifts_and_is_the_same_at_the_same_instant(drawn, smoke):
-    source = smoke[SMOKY]._light.smoke[0]
+    source = smoke[SMOKY].packed[1].smoke[0]
     eye = (float(source[0]) - 40.0, float(source[1]), float(source[2]) + 4.0)
     views = looking([eye], fov=0.9)
     clear = drawn(smoke[CLEAR], at(views, 9.0)).rgb[0].astype(int)

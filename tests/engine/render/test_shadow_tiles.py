@@ -93,7 +93,7 @@ def light_at(light, points, found):
 def test_the_light_of_a_point_is_blended_over_four_texels_of_the_whole_map(
     renderer_of, geometry, shadows
 ):
-    light = renderer_of(city_scene())._light
+    _, light = renderer_of(city_scene()).packed
     with_towers = light._replace(
         shadow_texel=shadows.heights,
         shadow_tile=tile_starts(shadows.tile),
