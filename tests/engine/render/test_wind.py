@@ -69,7 +69,7 @@ def test_calm_air_moves_nothing(seen):
 
 
 def test_the_boxes_of_plants_hold_them_however_they_lean(grove):
-    geometry = grove[WINDY]._geometry
+    geometry, _ = grove[WINDY].packed
     pose = geometry.fixture_pose[0].astype(float)
     low, high = geometry.box[geometry.fixture_prototype[0]].reshape(2, 3)
     corners = np.array([np.where(np.array(way), high, low) for way in np.ndindex(2, 2, 2)])
