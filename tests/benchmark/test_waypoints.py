@@ -320,7 +320,7 @@ def test_a_policy_on_this_machine_without_its_files_is_one_line(tmp_path):
         ({"lerobot": "nowhere"}, "lerobot: no config.json in the folder .*nowhere"),
         ({"lerobot": "x", "rate": 0.0}, "rate: 0.0 is not allowed"),
         ({"lerobot": "x", "transformers": "y"}, "not lerobot and transformers"),
-        ({}, "one of lerobot, transformers and url is allowed, not none of them"),
+        ({}, "one of 'lerobot', 'transformers', 'url' is allowed, not none"),
         ({"url": "http://a"}, "model: missing, allowed: text, not empty"),
         ({"url": "file:///etc", "model": "m"}, "'file:///etc' is not allowed: an address, http"),
         ({"transformers": "y", "device": "gpu"}, "device: 'gpu' is not allowed"),

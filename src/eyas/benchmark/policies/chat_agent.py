@@ -226,7 +226,7 @@ def open_agent(path: Path, changes: Mapping[str, Any], *, sampled: bool = False)
         kinds = sorted({"url", *LOCAL} & content.keys())
         if len(kinds) != 1:
             found = " and ".join(kinds) if kinds else "none of them"
-            raise ConfigError(f"one of lerobot, transformers and url is allowed, not {found}")
+            raise ConfigError(f"one of 'lerobot', 'transformers', 'url' is allowed, not {found}")
         if kinds[0] in LOCAL:
             from eyas.benchmark.policies.local_model import local_agent
 

@@ -24,7 +24,9 @@ _STATE = "observation.state"
 _NUMBERS = 4  # Of an action: ahead, left, up [m/s], turn to the left [rad/s]
 
 Device = Annotated[
-    str, Field(pattern=r"^(cpu|mps|cuda(:[0-9]{1,3})?)$"), TextForm("cpu, mps, cuda or cuda:N")
+    str,
+    Field(pattern=r"^(cpu|mps|cuda(:[0-9]{1,3})?)$"),
+    TextForm("'cpu', 'mps', 'cuda', 'cuda:1'"),
 ]
 
 
