@@ -7,6 +7,7 @@ import json
 import os
 import urllib.error
 import urllib.request
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import partial
 from http.client import HTTPException
@@ -83,7 +84,7 @@ class ChatFile(AskedConfig):
     """How many questions are asked at the same time."""
 
 
-class AskedAgent:
+class AskedAgent(ABC):
     """Asks a model for one drone. An answer that cannot be read changes nothing."""
 
     def __init__(self, file: AskedConfig) -> None:
@@ -96,7 +97,7 @@ class AskedAgent:
         for name, word in words.items():  # not by `format`, which looks into objects
             self._system = self._system.replace("{" + name + "}", str(word))
 
-    def begin(self, words: str) -> None:
+    def begin(self, words: str) -> None:  # noqa: B027  # its parameter asks for the words
         """No-op: every question has the words."""
 
     def plan(self, look: Look) -> object:
@@ -105,6 +106,7 @@ class AskedAgent:
         asked = f"Target: {words} Time: {look.time:.2f} s."
         return answer_in(self.written(self._system, asked, look.pictures), self.step, self.size)
 
+    @abstractmethod
     def written(self, system: str, words: str, pictures: Picture) -> str:
         """Return what the model writes.
 
@@ -113,7 +115,6 @@ class AskedAgent:
             words: What it has to follow, and the time.
             pictures: The newest last, shape (K, H, W, 3).
         """
-        raise NotImplementedError
 
 
 class ChatAgent(AskedAgent):

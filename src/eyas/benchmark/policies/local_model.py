@@ -171,7 +171,7 @@ def _refuse_classes(path: Path) -> None:
     """Refuse steps that name a class of Python, which LeRobot would import and make.
 
     Raises:
-        DataFileError: There is one, or the file is none of LeRobot.
+        DataFileError: A step names one, or LeRobot has not written the file.
     """
     content = read_json(path, _LARGEST)
     steps = content.get("steps") if isinstance(content, dict) else None

@@ -200,7 +200,7 @@ def worst_fifth_of(values: ArrayLike, clusters: Clusters) -> Estimate:
 
 
 _ELO = 2.302585092994046 / 400.0  # log(10) / 400, of Elo's scale: 400 points are odds of ten to one
-_MOST = 800.0  # Distance to the strongest and the weakest opponent beyond which nobody is rated
+_MOST = 800.0  # Distance to the strongest and the weakest opponent beyond which no rating is given
 
 
 def elo_of(scores: ArrayLike, opponents: ArrayLike, clusters: Clusters) -> Estimate:

@@ -67,7 +67,7 @@ class Scoring:
         box: Left, top, width, height of the target in the first picture, in place of `truth`.
 
     Raises:
-        ConfigError: The box is none with an area.
+        ConfigError: The box has no area, or lies far from any picture.
     """
 
     tracker: str
@@ -80,24 +80,27 @@ class Scoring:
 
     def __post_init__(self) -> None:
         """Refuse a box without an area, or far from any picture."""
-        if self.box is None:
-            return
-        box = np.asarray(self.box, np.float64)
-        if box.shape != (4,) or not (np.abs(box) <= _FURTHEST).all() or (box[2:] <= 0.0).any():
-            said = ",".join(map(str, self.box))
-            raise ConfigError(f"--box: {said!r:.80} is not allowed: {_BOX}")
+        if self.box is not None:
+            _require_area(self.box, ",".join(map(str, self.box)))
+
+
+def _require_area(box: Sequence[float], said: str) -> None:
+    sides = np.asarray(box, np.float64)
+    if sides.shape != (4,) or not (np.abs(sides) <= _FURTHEST).all() or (sides[2:] <= 0.0).any():
+        raise ConfigError(f"--box: {said!r:.80} is not allowed: {_BOX}")
 
 
 def parsed_box(text: str) -> tuple[float, float, float, float]:
     """Return the box that a text gives as `left,top,width,height`; see `Scoring`.
 
     Raises:
-        ConfigError: It is not four numbers.
+        ConfigError: It is not four numbers, or has no area.
     """
     try:
         left, top, width, height = (float(cell) for cell in text.split(","))
     except ValueError:
         raise ConfigError(f"--box: {text!r:.80} is not allowed: {_BOX}") from None
+    _require_area((left, top, width, height), text)
     return left, top, width, height
 
 

@@ -68,7 +68,7 @@ def pack(folder: Path, out: Path | None = None) -> Packed:
         if holds_code(policy):
             notes.append(f"'{Path(policy).name}' holds code: others verify it only by --trust")
     elif holds_code(policy):
-        notes.append("its policy is code, which is not in it: nobody can verify it; send a file")
+        notes.append("its policy is code, which is not in it: others cannot verify it; send a file")
     if find_spec("av") is None:
         notes.append("without a film (extra video)")
     else:
