@@ -26,7 +26,7 @@ WORDS = [
     (["eyas", "vi"], {"video"}),
     (["eyas", "maps", "sh"], {"show"}),
     (["eyas", "video", "--pol"], {"--policy"}),
-    (["eyas", "video", "--seed", "3", "--re"], {"--resume"}),
+    (["eyas", "video", "--seed", "3", "--res"], {"--resume"}),
     (["eyas", "video", "--map", "vil"], {"village", "village-bare"}),
     (["eyas", "evaluate", "--policy", "road"], {"road-graph"}),
     (["eyas", "cache", "clear", "--k"], {"--kind"}),
